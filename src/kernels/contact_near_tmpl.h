@@ -91,8 +91,8 @@ SPRING_INLINE scalar least_of_lanes(real a)
     return least;
 }
 
-/* Bits of the colliders that particles with these paths may touch. */
-SPRING_NOINLINE uint32_t boxes_on_paths(const collider_bounds *c, const path_bounds *b)
+/* Sets the bits of the colliders that particles with these paths may touch, and the bound on the lengths. */
+SPRING_NOINLINE uint32_t boxes_on_paths(const collider_bounds *c, const path_bounds *b, scalar *most)
 {
     scalar low[3], high[3], size = 0;
     for (int a = 0; a < 3; a++) {
@@ -101,7 +101,7 @@ SPRING_NOINLINE uint32_t boxes_on_paths(const collider_bounds *c, const path_bou
         const scalar below = low[a] < 0 ? -low[a] : low[a], above = high[a] < 0 ? -high[a] : high[a];
         size += below > above ? below : above;
     }
-    const scalar way = -least_of_lanes(b->minus_way);
+    const scalar way = *most = -least_of_lanes(b->minus_way);
     const scalar margin = (scalar)4.2 * c->growth * way + 64 * SCALAR_EPSILON * (size + way);
     uint32_t meet = 0;
     for (size_t k = 0; k < c->count; k += lanes) {
@@ -124,36 +124,38 @@ SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t a
                    axes > 2 ? vec_load(quantity + 2 * stride) : splat(0)};
 }
 
-static bool find_near_colliders(const collider_bounds *c, const scene_particles *p, const kept_motion *kept,
-                                const scalar *x, const scalar *radius, size_t radius_stride, size_t first, size_t count,
-                                uint32_t nearby[contact_chunk])
+static bool find_near_colliders(resting_chunk *r)
 {
+    const collider_bounds *const c = r->bounds;
+    const scene_particles *const p = r->particles;
+    const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
+    const size_t count = r->count;
     path_bounds b;
     begin_bounds(&b);
     for (size_t i = 0; i < count; i += lanes) /* without padding lanes */
         extend_bounds(&b, first_lanes(count - i < lanes ? count - i : lanes),
-                      load_place(kept->x0[0] + i, contact_chunk, p->axes),
-                      load_place(x + first + i, p->stride, p->axes));
-    const uint32_t meet = boxes_on_paths(c, &b);
+                      load_place(x0 + i, contact_chunk, p->axes), load_place(x + i, p->stride, p->axes));
+    r->nearby = boxes_on_paths(c, &b, &r->way);
+    if (r->nearby == 0) {
+        memset(r->candidate, 0, count * sizeof *r->candidate);
+        return false;
+    }
     unsigned index[most_colliders], left = 0;
     for (unsigned k = 0; k < c->count; k++) {
         index[left] = k;
-        left += meet >> k & 1;
+        left += r->nearby >> k & 1;
     }
     lane_mask found = {0};
-    if (left == 0)
-        memset(nearby, 0, count * sizeof *nearby);
-    for (size_t i = 0; i < count && left > 0; i += lanes) {
-        const real3 from = load_place(kept->x0[0] + i, contact_chunk, p->axes);
-        const real3 to = load_place(x + first + i, p->stride, p->axes);
-        const real r = radius_stride != 0 ? vec_load(radius + first + i) : splat(*radius);
+    for (size_t i = 0; i < count; i += lanes) {
+        const real3 from = load_place(x0 + i, contact_chunk, p->axes), to = load_place(x + i, p->stride, p->axes);
+        const real radius = r->radius_stride != 0 ? vec_load(r->radius + r->first + i) : splat(*r->radius);
         lane_bits bits = bits_where((lane_mask){0}, 0);
         for (unsigned k = 0; k < left; k++) {
-            const lane_mask touch = may_touch(&c->each[index[k]], from, to, r);
+            const lane_mask touch = may_touch(&c->each[index[k]], from, to, radius);
             bits |= bits_where(touch, UINT32_C(1) << index[k]);
             found |= touch;
         }
-        store_bits(nearby + i, bits);
+        store_bits(r->candidate + i, bits);
     }
     return any(found);
 }

@@ -473,9 +473,10 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     q->change = select3(s.presses, plus3(q->change, change), q->change);
 }
 
-/* Particles of a chunk, one in each lane. Lanes beyond `count` repeat the first. */
+/* Particles of a chunk, one in each lane. */
 typedef struct picked_particles {
-    size_t count, place[lanes]; /* in the chunk */
+    size_t place[lanes]; /* in the chunk */
+    lane_mask where;     /* others are of other particles, or of one of these */
     bool consecutive;
 } picked_particles;
 
@@ -516,10 +517,27 @@ SPRING_NOINLINE void put3(const picked_particles *l, const lane_mask *where, con
             continue;
         }
         vec_store(of_lane, each[a]);
-        for (size_t j = 0; j < l->count; j++)
+        for (size_t j = 0; j < lanes; j++)
             if (changes[j] != 0)
                 at[l->place[j]] = of_lane[j];
     }
+}
+
+/* Removes lanes whose changed path may touch another collider. */
+SPRING_NOINLINE void leave_to_others(const resting_chunk *r, unsigned c, const resting_lanes *q, lane_mask *fine)
+{
+    const real3 x = plus3(q->x0, q->d);
+    uint32_t others = r->nearby;
+    path_bounds paths;
+    begin_bounds(&paths);
+    extend_bounds(&paths, *fine & q->touching, q->x0, x);
+    if (any(paths.minus_way < -r->way)) {
+        scalar way;
+        others = boxes_on_paths(r->bounds, &paths, &way);
+    }
+    for (unsigned o = 0; o < r->bounds->count; o++)
+        if (o != c && (others >> o & 1) != 0)
+            *fine &= not_mask(q->touching & may_touch(&r->bounds->each[o], q->x0, x, q->radius));
 }
 
 /* The step of particles that may touch collider c only: see rest_step. */
@@ -531,7 +549,6 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particle
     const size_t first = r->first;
     const uint32_t axes = p->axes;
     const scalar h = m->drift;
-    const lane_mask where = first_lanes(l->count);
     const bool dragged = p->drag != 0;
     resting_lanes q;
     real3 force, held;
@@ -571,21 +588,14 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particle
     real3 y0, n;
     real gap;
     meet_lanes(&q, &at, &y0, &n, &gap);
-    q.touching &= where;
+    q.touching &= l->where;
     if (any(q.touching))
         press_lanes(&q, &at, y0, n, gap, h);
-    fine &= where & not_mask(q.failed);
+    fine &= l->where & not_mask(q.failed);
     const real3 x = plus3(q.x0, q.d);
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
-    if (r->bounds->count > 1 && any(fine & q.touching)) {
-        path_bounds paths;
-        begin_bounds(&paths);
-        extend_bounds(&paths, fine & q.touching, q.x0, x);
-        const uint32_t others = boxes_on_paths(r->bounds, &paths) & ~(UINT32_C(1) << c);
-        for (unsigned o = 0; o < r->bounds->count; o++)
-            if ((others >> o & 1) != 0)
-                fine &= not_mask(q.touching & may_touch(&r->bounds->each[o], q.x0, x, q.radius));
-    }
+    if (r->bounds->count > 1 && any(fine & q.touching))
+        leave_to_others(r, c, &q, &fine);
     const lane_mask done = fine & q.touching;
     if (!any(done))
         return fine;
@@ -602,10 +612,10 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particle
     }
     put3(l, &done, &x, m->x + first, p->stride, axes);
     put3(l, &done, &q.w, m->v + first, p->stride, axes);
-    put3(l, &done, &q.change, r->change[0], contact_chunk, 3);
+    put3(l, &done, &q.change, r->change, contact_chunk, 3);
     uint32_t touches[lanes];
     store_bits(touches, bits_where(done, 1));
-    for (size_t j = 0; j < l->count; j++)
+    for (size_t j = 0; j < lanes; j++)
         if (touches[j] != 0)
             r->touched[first + l->place[j]] = UINT32_C(1) << c;
     return fine;
@@ -616,7 +626,6 @@ SPRING_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particle
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->kick_drift;
-    const lane_mask where = first_lanes(l->count);
     real3 x, kicked;
     real radius, friction = splat(1);
     pick3(l, r->place, p->stride, 1, p->axes, &x);
@@ -625,16 +634,44 @@ SPRING_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particle
     if (r->friction != NULL)
         pick(l, r->friction + r->first, 1, &friction);
     real3 v = kicked;
-    stop_lanes(b, r->at_end ? &b->end : &b->start, &x, &radius, &friction, where, &v);
+    stop_lanes(b, r->at_end ? &b->end : &b->start, &x, &radius, &friction, l->where, &v);
     const real3 change = minus3(v, kicked);
-    put3(l, &where, &v, m->v + r->first, p->stride, p->axes);
-    put3(l, &where, &change, r->change[0], contact_chunk, 3);
-    return where;
+    put3(l, &l->where, &v, m->v + r->first, p->stride, p->axes);
+    put3(l, &l->where, &change, r->change, contact_chunk, 3);
+    return l->where;
 }
 
 /* Computes the contact of some particles with collider c, their only candidate. Returns the lanes whose motion is
    complete. */
 typedef lane_mask rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
+
+/* The particles from *k on with collider c as their only candidate: those within the next vector if they fill half of it,
+   else any. *k: where to continue */
+SPRING_INLINE void pick_next(const resting_chunk *r, unsigned c, size_t *k, picked_particles *l)
+{
+    const size_t last = (r->count - 1) / lanes * lanes, start = *k < last ? *k : last; /* within the padding */
+    size_t count = 0, i = *k;
+    uint32_t window[lanes];
+    for (size_t j = 0; j < lanes; j++) {
+        window[j] = start + j >= *k && start + j < r->count && r->candidate[start + j] == UINT32_C(1) << c;
+        count += window[j];
+    }
+    l->consecutive = 2 * count >= lanes;
+    if (l->consecutive) {
+        for (size_t j = 0; j < lanes; j++)
+            l->place[j] = start + j;
+        l->where = are_bits(load_bits(window), 1);
+        *k = start + lanes;
+        return;
+    }
+    for (count = 0; i < r->count && count < lanes; i++)
+        if (r->candidate[i] == UINT32_C(1) << c)
+            l->place[count++] = i;
+    l->where = first_lanes(count);
+    while (count < lanes)
+        l->place[count++] = l->place[0];
+    *k = i;
+}
 
 SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
 {
@@ -645,21 +682,17 @@ SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
         const contact_body *const b = &r->setting->body[c];
         if ((single >> c & 1) == 0 || b->slips || b->shape == SPRING_CUSTOM)
             continue;
-        picked_particles l = {0};
         for (size_t k = 0; k < r->count;) {
-            if (r->candidate[k] == UINT32_C(1) << c)
-                l.place[l.count++] = k;
-            if (++k < r->count && l.count < lanes)
+            if (r->candidate[k] != UINT32_C(1) << c) {
+                k++;
                 continue;
-            for (size_t j = l.count; j < lanes; j++)
-                l.place[j] = l.place[0];
-            l.consecutive = l.count == lanes && l.place[lanes - 1] - l.place[0] == lanes - 1;
-            uint32_t complete[lanes] = {0};
-            if (l.count > 0)
-                store_bits(complete, bits_where(step(r, &l, c), 1));
-            for (size_t j = 0; j < l.count; j++)
-                r->done[l.place[j]] = complete[j];
-            l.count = 0;
+            }
+            picked_particles l;
+            uint32_t complete[lanes];
+            pick_next(r, c, &k, &l);
+            store_bits(complete, bits_where(step(r, &l, c), 1));
+            for (size_t j = 0; j < lanes; j++)
+                r->done[l.place[j]] |= complete[j];
         }
     }
 }

@@ -215,28 +215,27 @@ typedef bool particle_kernel(const scene_particles *, const scene_motion *, size
 /* Copies x0, v0 and force of particles first ... first + contact_chunk - 1, and further ones of the padding. */
 typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t first, size_t count, kept_motion *);
 
-/* Sets bit k of near[i] if particle first + i may touch collider k on its way from kept.x0 to x. Returns whether it sets
-   a bit. radius: [m] of particles, or of all if radius_stride is 0 */
-typedef bool near_kernel(const collider_bounds *, const scene_particles *, const kept_motion *, const scalar *x,
-                         const scalar *radius, size_t radius_stride, size_t first, size_t count,
-                         uint32_t nearby[contact_chunk]);
-
-/* Particles first ... first + count - 1 of a motion of leapfrog, to be computed by rest_kernel. */
+/* Particles first ... first + count - 1 of a motion that may touch colliders. */
 typedef struct resting_chunk {
     const contact_setting *setting;
     const collider_bounds *bounds;
     const scene_particles *particles;
     const scene_motion *kick_drift;
     const kept_motion *kept;
-    const scalar *radius, *friction; /* of particles; see near_kernel. friction NULL: 1 */
+    const scalar *radius, *friction; /* of particles: [m], of all if radius_stride is 0; NULL: 1 */
     size_t radius_stride, first, count;
+    uint32_t nearby;     /* bits of the colliders that any of these may touch on a way of this length */
+    scalar way;          /* [m] */
     const scalar *place; /* [m] where stop_resting stops: the position of the first particle on the first axis */
     bool at_end;         /* the stop is at the end of the step */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
     uint32_t done[contact_chunk];      /* 1: the motion is complete */
     uint32_t *touched;                 /* by particle: the bit of the collider that it touches is added */
-    scalar change[3][contact_chunk];   /* [m/s] by the contact, of the last of these kernels */
+    scalar *change;                    /* [3][contact_chunk] [m/s] written: by the contact; may be kept.force */
 } resting_chunk;
+
+/* Sets `candidate`, `nearby` and `way` for the motion from kept.x0 to x. Returns whether there is a candidate. */
+typedef bool near_kernel(resting_chunk *);
 
 /* For particles with one candidate. stop_resting completes a kick: it writes v, done and change. move_resting completes
    motions of particles that rest or slide: it writes x, v, predicted, done, touched and change. */

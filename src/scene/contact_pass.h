@@ -205,32 +205,24 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
                          const scalar *x, size_t stride)
 {
     const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
-    uint32_t left = 0;
-    for (size_t k = 0; k < r->count; k++)
-        left |= which[k] != 0 ? r->candidate[k] : 0;
-    for (unsigned c = 0; c < t->setting.count; c++) {
-        if ((left >> c & 1) == 0)
+    for (size_t k = 0; k < r->count; k++) {
+        if (which[k] == 0)
             continue;
+        unsigned c = 0;
+        while ((r->candidate[k] >> c & 1) == 0)
+            c++;
         const double *const origin = t->setting.origin[c];
-        vector3 linear = {0, 0, 0}, angular = {0, 0, 0};
-        for (size_t k = 0; k < r->count; k++) {
-            if (which[k] == 0 || r->candidate[k] != UINT32_C(1) << c)
-                continue;
-            const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
-            const vector3 at = load_vector(x + k, stride, r->particles->axes);
-            const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
-            const vector3 j = vector_times(-mass, load_vector(&r->change[0][k], contact_chunk, 3));
-            linear = vector_plus(linear, 1, j);
-            angular.x += arm.y * j.z - arm.z * j.y;
-            angular.y += arm.z * j.x - arm.x * j.z;
-            angular.z += arm.x * j.y - arm.y * j.x;
-        }
         spring_impulse *const sum = &t->setting.impulse[c];
-        const double more[6] = {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z};
-        for (int a = 0; a < 3; a++) {
-            sum->linear[a] += more[a];
-            sum->angular[a] += more[3 + a];
-        }
+        const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
+        const vector3 at = load_vector(x + k, stride, r->particles->axes);
+        const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
+        const vector3 j = vector_times(-mass, load_vector(r->change + k, contact_chunk, 3));
+        sum->linear[0] += j.x;
+        sum->linear[1] += j.y;
+        sum->linear[2] += j.z;
+        sum->angular[0] += arm.y * j.z - arm.z * j.y;
+        sum->angular[1] += arm.z * j.x - arm.x * j.z;
+        sum->angular[2] += arm.x * j.y - arm.y * j.x;
     }
 }
 
@@ -257,8 +249,10 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
                                 size_t count, const uint32_t *touched, const scalar *x, bool at_end)
 {
     resting_chunk r;
-    kernel(p, m, from, from + count); /* whether it fails does not matter: stops may remove what is too fast */
+    scalar change[3][contact_chunk];
+    const bool fine = kernel(p, m, from, from + count); /* otherwise stops may remove what is too fast */
     begin_rest(s, t, p, m, NULL, from, count, &r);
+    r.change = change[0];
     if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
         r.place = x + from;
         r.at_end = at_end;
@@ -270,6 +264,8 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
         const size_t i = from + k;
+        if (fine && touched[k] == 0)
+            continue;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
         if (touched[k] != 0 && !pinned && r.done[k] == 0) {
             contact_particle q;
@@ -296,9 +292,10 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     kernels->keep_motion(p, m, from, count, &kept);
     const bool fine = kernel(p, m, from, from + count);
     memset(t->touched + from, 0, count * sizeof *t->touched);
-    if (!kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, r.candidate) && fine)
-        return true;
     begin_rest(s, t, p, m, &kept, from, count, &r);
+    r.change = kept.force[0];
+    if (!kernels->find_near(&r) && fine)
+        return true;
     filter_candidates(s, t, &r);
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
