@@ -944,7 +944,7 @@ static void contacts_of_a_custom_body(void)
     free(s);
 }
 
-/* A wall that starts to move hits the particle that rests on it: (1 + e) V. */
+/* A wall that starts to move hits the particle that rests on it: (1 + e) V. A plate stops it. */
 static void hit_from_rest(void)
 {
     const double x[3] = {0.3, 0.1, -0.2}, none[3] = {0}, e = 0.5, speed = 2;
@@ -958,6 +958,17 @@ static void hit_from_rest(void)
     get(s, now, v);
     CHECK_CLOSE(v[1], (1 + e) * speed, 8 * EPS * speed, "the velocity after an impact");
     CHECK_CLOSE(now[1], x[1] + 0.03 * v[1], 8 * EPS, "from the start of the step");
+    free(s);
+    /* On its new path there is a thin plate, which is far from the path without the wall. */
+    const double below = 0.125;
+    spring_collider both[2] = {c, unit_box};
+    both[1].at[1] = below + 0.001, both[1].half[1] = 0.001, both[1].restitution = e;
+    s = particle_at(x, none, none, 2);
+    set(s, both, 2);
+    run(s, SPRING_LEAPFROG, 0.01, 1);
+    get(s, now, v);
+    CHECK(now[1] <= below + 8 * EPS, "not through the plate");
+    CHECK(v[1] <= 0, "nor toward it");
     free(s);
 }
 
