@@ -480,46 +480,61 @@ typedef struct picked_particles {
     bool consecutive;
 } picked_particles;
 
-/* A quantity of these particles. from: of the first particle of the chunk; step: between particles, 0 or 1 */
-SPRING_NOINLINE void pick(const picked_particles *l, const scalar *from, size_t step, real *to)
+SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, size_t stride, size_t step, uint32_t axes,
+                               real *to)
 {
-    scalar each[lanes];
-    if (l->consecutive) {
-        *to = vec_load(from + step * l->place[0]);
-        return;
+    for (uint32_t a = 0; a < axes; a++) {
+        scalar each[lanes];
+        for (size_t j = 0; j < lanes; j++)
+            each[j] = from[a * stride + step * l->place[j]];
+        to[a] = vec_load_lanes(each);
     }
-    for (size_t j = 0; j < lanes; j++)
-        each[j] = from[step * l->place[j]];
-    *to = vec_load_lanes(each);
+}
+
+/* A quantity of these particles. from: of the first particle of the chunk; step: between particles, 0 or 1 */
+SPRING_INLINE real pick(const picked_particles *l, const scalar *from, size_t step)
+{
+    real picked;
+    if (l->consecutive)
+        return vec_load(from + step * l->place[0]);
+    pick_each(l, from, 0, step, 1, &picked);
+    return picked;
 }
 
 /* The same on each axis; stride: between axes. */
-SPRING_NOINLINE void pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step, uint32_t axes,
-                           real3 *to)
+SPRING_INLINE real3 pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step, uint32_t axes)
 {
-    pick(l, from, step, &to->x);
-    pick(l, from + stride, step, &to->y);
-    to->z = splat(0);
-    if (axes > 2)
-        pick(l, from + 2 * stride, step, &to->z);
+    if (l->consecutive)
+        return load_place(from + step * l->place[0], stride, axes);
+    real to[3] = {splat(0), splat(0), splat(0)};
+    pick_each(l, from, stride, step, axes, to);
+    return (real3){to[0], to[1], to[2]};
+}
+
+SPRING_NOINLINE void put_each(const picked_particles *l, const lane_mask *where, const real each[3], scalar *to,
+                              size_t stride, uint32_t axes)
+{
+    scalar value[3][lanes];
+    uint32_t changes[lanes];
+    store_bits(changes, bits_where(*where, 1));
+    for (uint32_t a = 0; a < axes; a++)
+        vec_store(value[a], each[a]);
+    for (size_t j = 0; j < lanes; j++)
+        for (uint32_t a = 0; a < axes && changes[j] != 0; a++)
+            to[a * stride + l->place[j]] = value[a][j];
 }
 
 SPRING_NOINLINE void put3(const picked_particles *l, const lane_mask *where, const real3 *value, scalar *to,
                           size_t stride, uint32_t axes)
 {
     const real each[3] = {value->x, value->y, value->z};
-    uint32_t changes[lanes];
-    store_bits(changes, bits_where(*where, 1));
+    if (!l->consecutive) {
+        put_each(l, where, each, to, stride, axes);
+        return;
+    }
     for (uint32_t a = 0; a < axes; a++) {
-        scalar *const at = to + a * stride, of_lane[lanes];
-        if (l->consecutive) {
-            vec_store(at + l->place[0], select_real(*where, each[a], vec_load(at + l->place[0])));
-            continue;
-        }
-        vec_store(of_lane, each[a]);
-        for (size_t j = 0; j < lanes; j++)
-            if (changes[j] != 0)
-                at[l->place[j]] = of_lane[j];
+        scalar *const at = to + a * stride + l->place[0];
+        vec_store(at, select_real(*where, each[a], vec_load(at)));
     }
 }
 
@@ -551,17 +566,15 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particle
     const scalar h = m->drift;
     const bool dragged = p->drag != 0;
     resting_lanes q;
-    real3 force, held;
-    real inverse_mass;
-    pick(l, p->inverse_mass + first * p->mass_stride, p->mass_stride, &inverse_mass);
-    pick3(l, r->kept->force[0], contact_chunk, 1, axes, &force);
-    pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes, &held);
-    pick3(l, r->kept->x0[0], contact_chunk, 1, axes, &q.x0);
-    pick3(l, r->kept->v0[0], contact_chunk, 1, axes, &q.v0);
-    pick(l, r->radius + first * r->radius_stride, r->radius_stride, &q.radius);
+    const real inverse_mass = pick(l, p->inverse_mass + first * p->mass_stride, p->mass_stride);
+    const real3 force = pick3(l, r->kept->force[0], contact_chunk, 1, axes);
+    const real3 held = pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes);
+    q.x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, axes);
+    q.v0 = pick3(l, r->kept->v0[0], contact_chunk, 1, axes);
+    q.radius = pick(l, r->radius + first * r->radius_stride, r->radius_stride);
     q.friction = splat(1);
     if (r->friction != NULL)
-        pick(l, r->friction + first, 1, &q.friction);
+        q.friction = pick(l, r->friction + first, 1);
     const real drag = p->drag * inverse_mass;
     implicit_factors damping = {splat(1), splat(0)};
     if (dragged)
@@ -626,19 +639,18 @@ SPRING_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particle
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->kick_drift;
-    real3 x, kicked;
-    real radius, friction = splat(1);
-    pick3(l, r->place, p->stride, 1, p->axes, &x);
-    pick3(l, m->v + r->first, p->stride, 1, p->axes, &kicked);
-    pick(l, r->radius + r->first * r->radius_stride, r->radius_stride, &radius);
-    if (r->friction != NULL)
-        pick(l, r->friction + r->first, 1, &friction);
+    const real3 x = pick3(l, r->place, p->stride, 1, p->axes);
+    const real3 kicked = pick3(l, m->v + r->first, p->stride, 1, p->axes);
+    const real radius = pick(l, r->radius + r->first * r->radius_stride, r->radius_stride),
+               fastest = splat(m->max_speed);
+    const real friction = r->friction != NULL ? pick(l, r->friction + r->first, 1) : splat(1);
     real3 v = kicked;
     stop_lanes(b, r->at_end ? &b->end : &b->start, &x, &radius, &friction, l->where, &v);
+    const lane_mask fine = l->where & (vec_abs(v.x) <= fastest) & (vec_abs(v.y) <= fastest) & (vec_abs(v.z) <= fastest);
     const real3 change = minus3(v, kicked);
-    put3(l, &l->where, &v, m->v + r->first, p->stride, p->axes);
-    put3(l, &l->where, &change, r->change, contact_chunk, 3);
-    return l->where;
+    put3(l, &fine, &v, m->v + r->first, p->stride, p->axes);
+    put3(l, &fine, &change, r->change, contact_chunk, 3);
+    return fine;
 }
 
 /* Computes the contact of some particles with collider c, their only candidate. Returns the lanes whose motion is

@@ -200,30 +200,43 @@ static void filter_candidates(const spring_scene *s, const scene_contacts *t, re
     }
 }
 
+static void add_impulse(spring_impulse *sum, const spring_impulse *more)
+{
+    for (int a = 0; a < 3; a++) {
+        sum->linear[a] += more->linear[a];
+        sum->angular[a] += more->angular[a];
+    }
+}
+
 /* Adds the impulses of changes of velocity at x, where `which` is not 0. */
 static void add_impulses(const spring_scene *s, const scene_contacts *t, const resting_chunk *r, const uint32_t *which,
                          const scalar *x, size_t stride)
 {
     const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
+    spring_impulse sum = {{0}, {0}};
+    unsigned c = 0; /* of the sum */
     for (size_t k = 0; k < r->count; k++) {
         if (which[k] == 0)
             continue;
-        unsigned c = 0;
-        while ((r->candidate[k] >> c & 1) == 0)
-            c++;
+        if (r->candidate[k] != UINT32_C(1) << c) {
+            add_impulse(&t->setting.impulse[c], &sum);
+            sum = (spring_impulse){{0}, {0}};
+            for (c = 0; r->candidate[k] != UINT32_C(1) << c;)
+                c++;
+        }
         const double *const origin = t->setting.origin[c];
-        spring_impulse *const sum = &t->setting.impulse[c];
         const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
         const vector3 at = load_vector(x + k, stride, r->particles->axes);
         const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
         const vector3 j = vector_times(-mass, load_vector(r->change + k, contact_chunk, 3));
-        sum->linear[0] += j.x;
-        sum->linear[1] += j.y;
-        sum->linear[2] += j.z;
-        sum->angular[0] += arm.y * j.z - arm.z * j.y;
-        sum->angular[1] += arm.z * j.x - arm.x * j.z;
-        sum->angular[2] += arm.x * j.y - arm.y * j.x;
+        sum.linear[0] += j.x;
+        sum.linear[1] += j.y;
+        sum.linear[2] += j.z;
+        sum.angular[0] += arm.y * j.z - arm.z * j.y;
+        sum.angular[1] += arm.z * j.x - arm.x * j.z;
+        sum.angular[2] += arm.x * j.y - arm.y * j.x;
     }
+    add_impulse(&t->setting.impulse[c], &sum);
 }
 
 /* Prepares the arguments of a rest_kernel for a chunk of particles. */
@@ -264,10 +277,10 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
         const size_t i = from + k;
-        if (fine && touched[k] == 0)
+        if (r.done[k] != 0 || (fine && touched[k] == 0))
             continue;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
-        if (touched[k] != 0 && !pinned && r.done[k] == 0) {
+        if (touched[k] != 0 && !pinned) {
             contact_particle q;
             scene_contact_particle(s, i, &q);
             q.x0 = load_vector(x + i, p->stride, p->axes);
