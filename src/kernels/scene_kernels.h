@@ -18,7 +18,7 @@ enum {
     most_bands = 32,    /* a block with shear and bend springs has 16 */
     nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
     tile = 64,          /* slots of a band whose forces are computed together; they fit the first-level cache */
-    contact_chunk = 32  /* particles whose contacts are found together */
+    contact_chunk = 256 / sizeof(scalar) /* particles whose contacts are found together; limited by the stack */
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
