@@ -304,6 +304,7 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
     const ptrdiff_t offset = band->offset;
     const scalar *const scales = band->direction_scale + (t - band->start), *const turnings =
                                                                                 band->turning + (t - band->start);
+    const int8_t *const occupied = band->occupied + (t - band->start);
     const scalar weight = axes > 1 ? s->turning_weight : 0;
     const size_t together = links_together(axes);
     for (size_t j = 0; j < count; j += together * lanes) {
@@ -311,6 +312,7 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
             const real scale = vec_load(scales + i);
+            const lane_mask joined = vec_load_mask(occupied + i); /* 0 times an infinite distance would be NaN */
             real delta[3], rate = splat(0);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
@@ -324,7 +326,7 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
                 rate += weight * vec_load(turnings + i);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++)
-                vec_store(force + a * axis + i, scale * rate * delta[a]);
+                vec_store(force + a * axis + i, select_real(joined, scale * rate * delta[a], splat(0)));
         }
     }
 }

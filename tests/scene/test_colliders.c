@@ -52,6 +52,50 @@ static void neighbours_change_nothing(void)
         }
 }
 
+/* Random particles without links. The first one has the same results alone, in single steps and with other kernels. */
+static void others_change_nothing(void)
+{
+    enum { count = 32, runs = 1000, steps = 12, collider_count = 4 };
+    size_t touched = 0;
+    for (int run = 0; run < runs; run++) {
+        double x[3 * count], v[3 * count], results[2][6];
+        const uint32_t axes = 2 + (uint32_t)(random_bits() % 2);
+        const double reach = random_log(0.5, 3), speed = random_log(0.03, 10), dt = random_log(0.002, 0.1);
+        for (size_t i = 0; i < count * axes; i++) {
+            x[i] = random_uniform(-reach, reach);
+            v[i] = random_uniform(-speed, speed);
+        }
+        spring_collider c[collider_count];
+        for (int i = 0; i < collider_count; i++) {
+            c[i] = random_collider(axes);
+            for (uint32_t a = 0; a < axes; a++) {
+                c[i].at[a] += random_uniform(-1, 1);
+                c[i].surface[a] = i == 0 ? c[i].surface[a] : 0;
+            }
+        }
+        const spring_method method = with_contacts[random_bits() % method_count];
+        spring_scene_def def = {.axes = axes, .position = x, .velocity = v, .gravity = {0, -9.81, 0}};
+        def.colliders = collider_count, def.particle_radius = random_uniform(0, 0.1), def.methods = 1u << method;
+        for (int all = 0; all < 2; all++) {
+            const scene_kernels *kernels = kernels_of((int)(random_bits() % kernel_count));
+            kernels = kernels != NULL ? kernels : kernels_of(0);
+            def.particles = all ? count : 1;
+            spring_scene *s = scene_of(&def);
+            CHECK(spring_scene_set_colliders(s, c, collider_count) == SPRING_OK, "valid colliders");
+            for (int i = 0; i < (all ? 1 : steps); i++) {
+                CHECK(spring_scene_advance_with(kernels, s, method, dt, all ? steps : 1) == SPRING_OK, "finite");
+                touched += count_touching(s, 1);
+            }
+            memset(results[all], 0, sizeof results[all]);
+            spring_scene_get(s, SPRING_POSITION, results[all], 0, 0, 1);
+            spring_scene_get(s, SPRING_VELOCITY, results[all] + 3, 0, 0, 1);
+            free(s);
+        }
+        CHECK(memcmp(results[0], results[1], sizeof results[0]) == 0, "other particles change no bit");
+    }
+    CHECK(touched > runs, "contacts took place");
+}
+
 /* The speed limit counts what is left after the contact, and a moving collider may exceed it. */
 static void speed_limit(void)
 {
@@ -453,6 +497,7 @@ static void pressed_by_damping(void)
 
 static const test tests[] = {
     {"neighbours in a SIMD vector", neighbours_change_nothing},
+    {"other particles", others_change_nothing},
     {"speed limit", speed_limit},
     {"bad colliders", bad_colliders},
     {"axes from floats", axes_from_floats},

@@ -619,10 +619,38 @@ static void impacts_add_no_energy(void)
         }
 }
 
+/* Two ropes at infinite distance. They form a band, with a slot without a link between them. */
+static void infinite_distance(void)
+{
+    enum { half = 10, count = 2 * half };
+    double x[count][2], v[count][2] = {{0}}, now[count][2];
+    spring_link link[count];
+    spring_scene_def def = {.axes = 2, .particles = count, .position = x[0], .velocity = v[0], .link = link};
+    for (uint32_t i = 0; i < count; i++) {
+        x[i][0] = (i < half ? -0.9 : 0.9) * (double)SCALAR_MAX;
+        x[i][1] = i % half;
+        v[i][1] = i % half == 0;
+        if (i % half > 0)
+            link[def.links++] = (spring_link){i - 1, i, 1, 10, 100, 0};
+    }
+    for (int k = 0; k < kernel_count; k++) {
+        if (kernels_of(k) == NULL)
+            continue;
+        spring_scene *s = scene_of(&def);
+        CHECK(s->layout.bands == 1 && spring_scene_advance_with(kernels_of(k), s, SPRING_LEAPFROG, 0.1, 3) == SPRING_OK,
+              "all forces are finite");
+        spring_scene_get(s, SPRING_VELOCITY, now[0], 0, 0, count);
+        CHECK_BELOW(fabs(now[0][1]), 0.5, "the links are damped");
+        CHECK(memcmp(now, now + half, half * sizeof now[0]) == 0, "both ropes alike");
+        free(s);
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"a step", plain_steps},
+        {"infinite distance", infinite_distance},
         {"creep", creep},
         {"turning", turning_dumbbell},
 #ifndef SPRING_FLOAT
