@@ -51,7 +51,8 @@ static void place(double t, double duration, pose *p)
     const double jump = fmod(run, 10) - 5; /* [s] a hop of 0.6 s every ten seconds */
     const double ground[3] = {6 * sin(0.5 * run), 0.04 * stride * stride, 4 * sin(0.7 * run)};
     const double height = jump > 0 && jump < 0.6 ? 9.81 / 2 * jump * (0.6 - jump) : 0, swing = 0.6 * stride; /* [rad] */
-    const double arm = 0.6, leg = 0.8, lean = 0.05, side = 0.24, hip = 0.1;                                  /* [m] */
+    const double arm = 0.6, leg = 0.8, lean = 0.05, side = 0.24;                                             /* [m] */
+    const double hip = 0.085; /* [m] no particle fits between the legs, where a cape would be caught */
     /* forward, up, left */
     const double local[CAPE_BODIES][2][3] = {
         {{0, 0.95, 0}, {lean, shoulder - 0.12, 0}},
