@@ -5,8 +5,9 @@
  * Format    Little-endian: a header of 64-bit words, sections of numbers, each padded with zeros to a multiple of 8
  *           bytes, and a check value. docs/details.md describes it. list_sections() is the only list of the sections:
  *           the size, save and load follow it. A new field is a row there, or a word of the header.
- * Loading   checks everything before it changes the scene. Sections are checked and read in the order of the list, so
- *           that a section may use those before it.
+ * Sections  One function for each kind of section moves its numbers in both directions.
+ * Loading   checks everything before it changes the scene: one pass over the state computes the check value and tests
+ *           all numbers. Sections are checked and moved in the order of the list, so a section may use those before it.
  * Check     Eight lanes of 64-bit words, each with one rotation and one multiplication per word. CRC-32 and FNV-1a take
  *           a byte at a time, several times as long as two steps, and XXH64 has two multiplications per word. Adding a
  *           word, the rotation and the multiplication by an odd number are bijections, so a change of one word always
@@ -38,6 +39,12 @@ static inline void copy_numbers(void *to, const void *from, size_t count, size_t
             out[i + k] = in[i + size - 1 - k];
 }
 
+/* Loads numbers from a state, or saves them. */
+static inline void move_numbers(bool load, void *numbers, uint8_t *state, size_t count, size_t size)
+{
+    copy_numbers(load ? numbers : state, load ? state : numbers, count, size);
+}
+
 static inline uint64_t word_at(const uint8_t *at)
 {
     uint64_t word;
@@ -52,6 +59,27 @@ static inline scalar number_at(const uint8_t *at, size_t i)
     return number;
 }
 
+static inline bool bit_at(const uint8_t *at, size_t i)
+{
+    return (at[i / 8] >> i % 8 & 1) != 0;
+}
+
+/* Sets bit i, which is 0. */
+static inline void set_bit(uint8_t *at, size_t i, bool bit)
+{
+    at[i / 8] = (uint8_t)(at[i / 8] | bit << i % 8);
+}
+
+/* ------------------------------------------------------------------------------------------------------ check value */
+
+enum { lanes = 8, word_bytes = sizeof(uint64_t) };
+
+/* The check value of the words so far: word i is mixed into lane i % lanes. */
+typedef struct digest {
+    uint64_t lane[lanes];
+    size_t words;
+} digest;
+
 /* `hash` with one more word. */
 static inline uint64_t hashed(uint64_t hash, uint64_t word)
 {
@@ -59,47 +87,76 @@ static inline uint64_t hashed(uint64_t hash, uint64_t word)
     return (sum << 31 | sum >> 33) * UINT64_C(0x9E3779B97F4A7C15);
 }
 
-/* size: a multiple of 8 */
-static uint64_t check_value(const uint8_t *bytes, size_t size)
+static void add_words(digest *d, const uint8_t *in, size_t words)
 {
-    enum { lanes = 8, word = 8 };
-    uint64_t lane[lanes] = {0}, hash = size;
+    uint64_t lane[lanes];
+    for (size_t k = 0; k < lanes; k++)
+        lane[k] = d->lane[(d->words + k) % lanes];
     size_t i = 0;
-    for (; i + lanes * word <= size; i += lanes * word) {
+    for (; i + lanes <= words; i += lanes) {
         SPRING_UNROLL
         for (size_t k = 0; k < lanes; k++)
-            lane[k] = hashed(lane[k], word_at(bytes + i + k * word));
+            lane[k] = hashed(lane[k], word_at(in + (i + k) * word_bytes));
     }
-    for (size_t k = 0; i < size; i += word, k++)
-        lane[k] = hashed(lane[k], word_at(bytes + i));
+    for (size_t k = 0; i < words; i++, k++)
+        lane[k] = hashed(lane[k], word_at(in + i * word_bytes));
     for (size_t k = 0; k < lanes; k++)
-        hash = hashed(hash, lane[k]);
+        d->lane[(d->words + k) % lanes] = lane[k];
+    d->words += words;
+}
+
+static uint64_t check_value(const digest *d)
+{
+    uint64_t hash = d->words * word_bytes;
+    for (size_t k = 0; k < lanes; k++)
+        hash = hashed(hash, d->lane[k]);
     return hash ^ hash >> 32;
 }
 
-/* Whether all numbers are finite, and not negative unless any_sign. The numbers of a word of a padded section are tested
-   at once: adding 1 to an exponent of ones carries into the sign. Adding 1 + headroom finds numbers that would not be
-   finite if they were multiplied by a number below 2^headroom, which is less than the largest. */
-static bool numbers_valid(const uint8_t *in, size_t count, bool any_sign, uint64_t headroom)
+/* Words that are tested at once. */
+#if defined(__GNUC__)
+typedef uint64_t word_group __attribute__((vector_size(2 * sizeof(uint64_t))));
+#else
+typedef uint64_t word_group;
+#endif
+
+/* The signs of those numbers that are not valid; other bits have no meaning. */
+SPRING_INLINE word_group invalid_signs(word_group word, uint64_t exponents, uint64_t one, bool any_sign)
 {
+    return any_sign ? (word & exponents) + one : word | (word + one);
+}
+
+/* Whether all numbers are finite, also if they are multiplied by a number below 2^headroom, which is less than the largest;
+   and not negative, unless any_sign. Adding `one` to an exponent that is too large carries into the sign. */
+SPRING_INLINE bool test_numbers(const uint8_t *in, size_t words, uint64_t headroom, bool any_sign)
+{
+    enum { group = sizeof(word_group) / sizeof(uint64_t), groups = 4 };
     const uint64_t first = sizeof(scalar) == sizeof(float) ? UINT64_C(1) << 32 | 1 : 1; /* bit 0 of each number */
     const unsigned sign = 8 * sizeof(scalar) - 1, fraction = sizeof(scalar) == sizeof(float) ? 23 : 52;
     const uint64_t exponents = (first << sign) - (first << fraction), one = first * (1 + headroom) << fraction;
-    const size_t bytes = (count * sizeof(scalar) + sizeof one - 1) / sizeof one * sizeof one;
-    uint64_t carries = 0, signs = 0;
+    word_group invalid = {0}, word = {0};
     size_t i = 0;
-    for (; i + 4 * sizeof one <= bytes; i += 4 * sizeof one) {
+    for (; i + groups * group <= words; i += groups * group) {
         SPRING_UNROLL
-        for (size_t k = 0; k < 4; k++) {
-            carries |= (word_at(in + i + k * sizeof one) & exponents) + one;
-            signs |= word_at(in + i + k * sizeof one);
+        for (size_t k = 0; k < groups; k++) {
+            copy_numbers(&word, in + (i + k * group) * word_bytes, group, word_bytes);
+            invalid |= invalid_signs(word, exponents, one, any_sign);
         }
     }
-    for (; i < bytes; i += sizeof one) {
-        carries |= (word_at(in + i) & exponents) + one;
-        signs |= word_at(in + i);
+    for (; i < words; i++) {
+        copy_numbers(&word, in + i * word_bytes, 1, word_bytes);
+        invalid |= invalid_signs(word, exponents, one, any_sign);
     }
-    return ((carries | (any_sign ? 0 : signs)) & first << sign) == 0;
+    uint64_t part[group], all = 0;
+    memcpy(part, &invalid, sizeof part);
+    for (size_t k = 0; k < group; k++)
+        all |= part[k];
+    return (all & first << sign) == 0;
+}
+
+static bool numbers_valid(const uint8_t *in, size_t words, bool any_sign, uint64_t headroom)
+{
+    return any_sign ? test_numbers(in, words, headroom, true) : test_numbers(in, words, headroom, false);
 }
 
 #include "../simd/size_begin.h"
@@ -172,7 +229,7 @@ enum {
 };
 
 static const char magic[] = "SPRSTATE";
-enum { format_version = 1, word_bytes = sizeof(uint64_t) };
+enum { format_version = 1 };
 
 static double value_of(uint64_t bits)
 {
@@ -266,15 +323,16 @@ typedef struct arriving {
     scalar lightest;              /* [1/kg] largest inverse mass of a free particle */
 } arriving;
 
-/* How a section is written, checked and read. */
-typedef struct section_kind {
-    void (*write)(const spring_scene *s, const section *row, uint8_t *out);
-    bool (*valid)(arriving *state, const section *row, const uint8_t *in);
-    void (*read)(spring_scene *s, const section *row, const uint8_t *in);
-} section_kind;
+/* Which numbers of a section are valid. STRENGTHS: not negative, and finite if multiplied by 2/mass of any particle */
+typedef enum valid_numbers { ANY, FINITE, NOT_NEGATIVE, STRENGTHS } valid_numbers;
 
 struct section {
-    const section_kind *kind;
+    /* Moves the section from the state to the scene (load), or from the scene, which stays as it is, to the state, whose
+       bits and padding are 0. */
+    void (*move)(spring_scene *s, const section *row, uint8_t *state, bool load);
+    /* fine: all numbers are valid. NULL: this is all there is to check */
+    bool (*valid)(arriving *a, const section *row, uint8_t *state, bool fine);
+    valid_numbers numbers;
     scene_array array;
     size_t count; /* elements */
     size_t bits;  /* of an element */
@@ -287,47 +345,59 @@ static size_t section_bytes(const section *row)
 
 #include "../simd/size_end.h"
 
-static inline bool bit_at(const uint8_t *at, size_t i)
-{
-    return (at[i / 8] >> i % 8 & 1) != 0;
-}
-
-/* Sets bit i, which is 0. */
-static inline void set_bit(uint8_t *at, size_t i, bool bit)
-{
-    at[i / 8] = (uint8_t)(at[i / 8] | bit << i % 8);
-}
-
 /* A quantity: all particles on the first axis, then on the next. */
-
-static void write_quantity(const spring_scene *s, const section *row, uint8_t *out)
+static void move_quantity(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     const size_t particles = s->layout.particles;
-    for (uint32_t a = 0; a < s->layout.axes; a++, out += particles * sizeof(scalar))
-        copy_numbers(out, scene_read_axis(s, row->array, a), particles, sizeof(scalar));
+    for (uint32_t a = 0; a < s->layout.axes; a++, state += particles * sizeof(scalar))
+        move_numbers(load, scene_axis(s, row->array, a), state, particles, sizeof(scalar));
 }
 
-static bool quantity_valid(arriving *state, const section *row, const uint8_t *in)
+/* Inverse masses of particles while they are free, and pins. */
+
+static void move_masses(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    (void)state;
-    return numbers_valid(in, row->count, true, 0);
+    move_numbers(load, scene_memory(s, row->array), state, row->count, sizeof(scalar));
 }
 
-/* Kept forces may be infinite: RKN8 uses the last ones only in the next call, which then fails. */
-static bool any_numbers(arriving *state, const section *row, const uint8_t *in)
+static bool masses_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
-    (void)state, (void)row, (void)in;
-    return true;
+    (void)row;
+    a->masses = state;
+    return fine;
 }
 
-static void read_quantity(spring_scene *s, const section *row, const uint8_t *in)
+static void move_pins(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const size_t particles = s->layout.particles;
-    for (uint32_t a = 0; a < s->layout.axes; a++, in += particles * sizeof(scalar))
-        copy_numbers(scene_axis(s, row->array, a), in, particles, sizeof(scalar));
+    const scalar *const freed = scene_read(s, ARRAY_FREE_MASS);
+    scalar *const inverse = scene_memory(s, row->array);
+    for (size_t i = 0; i < row->count && load; i++)
+        inverse[i] = bit_at(state, i) ? 0 : freed[i];
+    for (size_t i = 0; i < row->count && !load; i += 8) {
+        unsigned bits = 0;
+        for (size_t k = 0; k < 8 && i + k < row->count; k++)
+            bits |= (inverse[i + k] == 0 ? 1u : 0) << k;
+        state[i / 8] = (uint8_t)bits;
+    }
 }
 
-/* A coefficient of all links of an editable scene, in the order of their indices. */
+static bool pins_valid(arriving *a, const section *row, uint8_t *state, bool fine)
+{
+    const uint8_t *const masses = a->masses;
+    scalar lightest = 0;
+    for (size_t i = 0; i < row->count; i++) {
+        const scalar inverse = number_at(masses, i);
+        if (bit_at(state, i))
+            continue;
+        fine = fine && inverse > 0;
+        lightest = inverse > lightest ? inverse : lightest;
+    }
+    a->pins = state;
+    a->lightest = lightest;
+    return fine && scene_fits(a->s->drag * (double)lightest);
+}
+
+/* A coefficient of all links of an editable scene, in the order of their indices. The scene has it by slot. */
 
 typedef struct coefficient_storage {
     const uint32_t *slots; /* NULL: each link has the slot of its index */
@@ -345,279 +415,210 @@ static coefficient_storage storage_of(const spring_scene *s, scene_array unbande
                                  s->layout.offset[unbanded] - slots * sizeof(scalar)};
 }
 
-/* [bytes] from the start of the block; an editable scene stores all coefficients by slot. */
-static inline size_t coefficient_at(const coefficient_storage *c, size_t link)
+static inline size_t slot_of(const coefficient_storage *c, size_t link)
 {
-    const size_t slot = c->slots != NULL ? c->slots[link] : link;
-    return (slot < c->band_slots ? c->banded : c->unbanded) + slot * sizeof(scalar);
+    return c->slots != NULL ? c->slots[link] : link;
 }
 
-static void write_coefficients(const spring_scene *s, const section *row, uint8_t *out)
+static inline scalar *stored_coefficient(spring_scene *s, const coefficient_storage *c, size_t link)
+{
+    const size_t slot = slot_of(c, link);
+    void *const at = (char *)s + ((slot < c->band_slots ? c->banded : c->unbanded) + slot * sizeof(scalar));
+    return at;
+}
+
+static void move_coefficients(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     const coefficient_storage c = storage_of(s, row->array);
-    for (size_t i = 0; i < row->count; i++)
-        copy_numbers(out + i * sizeof(scalar), (const char *)s + coefficient_at(&c, i), 1, sizeof(scalar));
+    if (c.slots == NULL) {
+        move_numbers(load, scene_memory(s, row->array), state, row->count, sizeof(scalar));
+    } else if (load) {
+        for (size_t i = 0; i < row->count; i++)
+            *stored_coefficient(s, &c, i) = number_at(state, i);
+    } else {
+        for (size_t i = 0; i < row->count; i++)
+            copy_numbers(state + i * sizeof(scalar), stored_coefficient(s, &c, i), 1, sizeof(scalar));
+    }
 }
 
-static void read_coefficients(spring_scene *s, const section *row, const uint8_t *in)
+/* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored like
+   that, other links with the sign for their order of the ends. With more axes, links with flags are stored with a sign. */
+static void move_rests(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     const coefficient_storage c = storage_of(s, row->array);
-    for (size_t i = 0; i < row->count; i++)
-        copy_numbers((char *)s + coefficient_at(&c, i), in + i * sizeof(scalar), 1, sizeof(scalar));
-}
-
-/* Makes what follows from the coefficients of links, after they have been read. */
-static void settle_links(spring_scene *s, uint64_t damped)
-{
-    const scene_layout *const l = &s->layout;
-    const coefficient_storage rest = storage_of(s, ARRAY_LINK_REST), d = storage_of(s, ARRAY_LINK_DAMPING);
-    scalar *const damping = scene_memory(s, ARRAY_BAND_DAMPING), *const unbanded = scene_memory(s, ARRAY_LINK_DAMPING);
-    const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS);
-    int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
-    tether *const tethers = scene_memory(s, ARRAY_TETHERS);
-    for (size_t i = 0; i < l->unbanded && damped == 0; i++)
-        unbanded[i] = 0;
-    for (size_t i = 0; i < l->tethers && damped == 0; i++)
-        tethers[i].damping = 0;
-    for (size_t i = 0; i < l->band_slots; i++) {
-        damping[i] = damped > 0 ? damping[i] : 0;
-        occupied[i] = stiffness[i] > 0 || damping[i] > 0 ? -1 : 0;
-    }
-    s->damped_links = s->isotropic_links = 0;
-    for (size_t i = 0; i < l->links && damped > 0; i++) {
-        scalar size, damper;
-        memcpy(&size, (const char *)s + coefficient_at(&rest, i), sizeof size);
-        memcpy(&damper, (const char *)s + coefficient_at(&d, i), sizeof damper);
-        scene_count_damped(s, (double)size, (double)damper, true);
-    }
-    s->bounds_known = false;
-}
-
-/* Inverse masses of particles while they are free, and pins. */
-
-static void write_masses(const spring_scene *s, const section *row, uint8_t *out)
-{
-    copy_numbers(out, scene_read(s, row->array), row->count, sizeof(scalar));
-}
-
-static bool masses_valid(arriving *state, const section *row, const uint8_t *in)
-{
-    state->masses = in;
-    return numbers_valid(in, row->count, false, 0);
-}
-
-static void read_masses(spring_scene *s, const section *row, const uint8_t *in)
-{
-    copy_numbers(scene_memory(s, row->array), in, row->count, sizeof(scalar));
-}
-
-static void write_pins(const spring_scene *s, const section *row, uint8_t *out)
-{
-    for (size_t i = 0; i < row->count; i++)
-        set_bit(out, i, inverse_mass_at(s, i) == 0);
-}
-
-static bool pins_valid(arriving *state, const section *row, const uint8_t *in)
-{
-    state->pins = in;
-    for (size_t i = 0; i < row->count; i++) {
-        const scalar inverse = number_at(state->masses, i);
-        if (bit_at(in, i))
+    const uint32_t *const a = scene_read(s, ARRAY_LINK_A), *const b = scene_read(s, ARRAY_LINK_B);
+    const uint8_t *const flags = scene_read(s, ARRAY_FLAGS);
+    const bool directed = s->layout.axes == 1, tension_only = (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    move_coefficients(s, row, state, load);
+    for (size_t i = 0; i < row->count && (directed ? a != NULL : tension_only || flags != NULL); i++) {
+        const size_t slot = slot_of(&c, i), at = slot - c.band_slots;
+        if (directed ? slot < c.band_slots || a[at] < b[at] : !tension_only && flags[i] == 0)
             continue;
-        if (inverse == 0)
-            return false;
-        state->lightest = inverse > state->lightest ? inverse : state->lightest;
+        scalar *const rest = stored_coefficient(s, &c, i);
+        if (load)
+            *rest = -*rest;
+        else
+            state[(i + 1) * sizeof(scalar) - 1] ^= 0x80;
     }
-    return scene_fits(state->s->drag * (double)state->lightest);
 }
 
-static void read_pins(spring_scene *s, const section *row, const uint8_t *in)
+/* Stiffness or damping. While a tether does not act, it has coefficients of 0 where other links have theirs. */
+static void move_strengths(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const scalar *const freed = scene_read(s, ARRAY_FREE_MASS);
-    for (size_t i = 0; i < row->count; i++)
-        scene_set_inverse_mass(s, i, bit_at(in, i) ? 0 : freed[i]);
+    const coefficient_storage c = storage_of(s, row->array);
+    tether *const tethers = scene_memory(s, ARRAY_TETHERS);
+    move_coefficients(s, row, state, load);
+    for (size_t i = 0; i < s->layout.tethers; i++) {
+        const size_t link = tethers[i].link;
+        scalar *const own = row->array == ARRAY_LINK_STIFFNESS ? &tethers[i].stiffness : &tethers[i].damping;
+        const link_place ends = scene_link_place(s, link);
+        move_numbers(load, own, state + link * sizeof(scalar), 1, sizeof(scalar));
+        if (load && (inverse_mass_at(s, ends.a) == 0) == (inverse_mass_at(s, ends.b) == 0))
+            *stored_coefficient(s, &c, link) = 0;
+    }
 }
 
 #include "../simd/size_begin.h"
 
 /* The inverse mass of a particle in the state. */
-static double arriving_inverse_mass(const arriving *state, size_t i)
+static double arriving_inverse_mass(const arriving *a, size_t i)
 {
-    return bit_at(state->pins, i) ? 0 : (double)number_at(state->masses, i);
+    return bit_at(a->pins, i) ? 0 : (double)number_at(a->masses, i);
 }
 
-/* Stiffness or damping. As in spring_scene_check(), twice the value divided by the mass of an end must be finite. Usually
-   all values would be valid for the lightest particle. */
-static bool strengths_valid(arriving *state, const section *row, const uint8_t *in)
+/* As in spring_scene_check(), twice the value divided by the mass of an end must be finite. Usually all values would be
+   valid for the lightest particle. */
+static bool strengths_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
-    uint64_t headroom = 0;
-    for (double bound = 0.5; bound <= (double)state->lightest; bound *= 2)
-        headroom++;
-    if (numbers_valid(in, row->count, false, headroom))
-        return true;
-    for (size_t i = 0; i < row->count; i++) {
-        const link_place at = scene_link_place(state->s, i);
-        const double lighter = fmax(arriving_inverse_mass(state, at.a), arriving_inverse_mass(state, at.b));
-        const double strength = (double)number_at(in, i);
+    for (size_t i = 0; i < row->count && !fine; i++) {
+        const link_place at = scene_link_place(a->s, i);
+        const double lighter = fmax(arriving_inverse_mass(a, at.a), arriving_inverse_mass(a, at.b));
+        const double strength = (double)number_at(state, i);
         if (!scene_not_negative(strength) || !scene_fits(2 * (strength * lighter)))
             return false;
     }
     return true;
 }
 
-/* Stiffness or damping of tethers: while they do not act, they have coefficients of 0 elsewhere. */
+#include "../simd/size_end.h"
 
-static scalar *of_tether(tether *t, scene_array array)
-{
-    return array == ARRAY_LINK_STIFFNESS ? &t->stiffness : &t->damping;
-}
-
-static void write_strengths(const spring_scene *s, const section *row, uint8_t *out)
-{
-    const tether *const tethers = scene_read(s, ARRAY_TETHERS);
-    write_coefficients(s, row, out);
-    for (size_t i = 0; i < s->layout.tethers; i++) {
-        tether t = tethers[i];
-        copy_numbers(out + t.link * sizeof(scalar), of_tether(&t, row->array), 1, sizeof(scalar));
-    }
-}
-
-static void read_strengths(spring_scene *s, const section *row, const uint8_t *in)
-{
-    tether *const tethers = scene_memory(s, ARRAY_TETHERS);
-    const coefficient_storage c = storage_of(s, row->array);
-    read_coefficients(s, row, in);
-    for (size_t i = 0; i < s->layout.tethers; i++) {
-        const link_place at = scene_link_place(s, tethers[i].link);
-        const bool acts = (inverse_mass_at(s, at.a) == 0) != (inverse_mass_at(s, at.b) == 0);
-        const scalar strength = number_at(in, tethers[i].link), acting = acts ? strength : 0;
-        *of_tether(&tethers[i], row->array) = strength;
-        memcpy((char *)s + coefficient_at(&c, tethers[i].link), &acting, sizeof acting);
-    }
-}
-
-static bool dampings_valid(arriving *state, const section *row, const uint8_t *in)
+static bool dampings_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
     size_t damped = 0;
     for (size_t i = 0; i < row->count; i++)
-        damped += number_at(in, i) > 0;
-    return damped == state->header[WORD_DAMPED] && strengths_valid(state, row, in);
-}
-
-/* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored like
-   that, other links with the sign for their order of the ends. With more axes, links with flags are stored with a sign. */
-
-static bool rests_valid(arriving *state, const section *row, const uint8_t *in)
-{
-    return numbers_valid(in, row->count, state->s->layout.axes == 1, 0);
-}
-
-/* Whether the stored rest length has another sign than that of the state. */
-static bool has_other_sign(const spring_scene *s, size_t link)
-{
-    if (s->layout.axes > 1)
-        return scene_link_flags(s, link) != 0;
-    const link_place at = scene_link_place(s, link);
-    return at.a > at.b;
-}
-
-static bool signs_differ(const spring_scene *s)
-{
-    const bool flagged = scene_has(s, ARRAY_FLAGS) || (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
-    return s->layout.axes == 1 ? s->layout.unbanded > 0 : flagged;
-}
-
-static void write_rests(const spring_scene *s, const section *row, uint8_t *out)
-{
-    write_coefficients(s, row, out);
-    for (size_t i = 0; i < row->count && signs_differ(s); i++)
-        if (has_other_sign(s, i))
-            out[(i + 1) * sizeof(scalar) - 1] ^= 0x80;
-}
-
-static void read_rests(spring_scene *s, const section *row, const uint8_t *in)
-{
-    read_coefficients(s, row, in);
-    const coefficient_storage c = storage_of(s, row->array);
-    for (size_t i = 0; i < row->count && signs_differ(s); i++)
-        if (has_other_sign(s, i)) {
-            const scalar rest = -number_at(in, i);
-            memcpy((char *)s + coefficient_at(&c, i), &rest, sizeof rest);
-        }
+        damped += number_at(state, i) > 0;
+    return damped == a->header[WORD_DAMPED] && strengths_valid(a, row, state, fine);
 }
 
 /* Weighted links of an editable scene: four weights, rest length, stiffness, damping, and 1 if a band computes it. */
 
 enum { weighted_numbers = 8 };
 
-static void write_weighted(const spring_scene *s, const section *row, uint8_t *out)
-{
-    const stored_weighted *const all = scene_read(s, row->array);
-    for (size_t i = 0; i < row->count; i++) {
-        const stored_weighted *const l = &all[i];
-        scalar numbers[weighted_numbers] = {0, 0, 0, 0, l->rest, l->stiffness, l->damping, l->banded};
-        for (int k = 0; k < l->points; k++)
-            numbers[l->place[k]] = l->weight[k];
-        copy_numbers(out + i * sizeof numbers, numbers, weighted_numbers, sizeof(scalar));
-    }
-}
-
-static spring_weighted_link weighted_at(const stored_weighted *l, const uint8_t *in)
-{
-    spring_weighted_link link = {
-        .rest = (double)number_at(in, 4), .stiffness = (double)number_at(in, 5), .damping = (double)number_at(in, 6)};
-    for (int k = 0; k < l->points; k++) {
-        link.particle[l->place[k]] = l->particle[k];
-        link.weight[l->place[k]] = (double)number_at(in, l->place[k]);
-    }
-    return link;
-}
-
-static bool weighted_valid(arriving *state, const section *row, const uint8_t *in)
-{
-    const stored_weighted *l = scene_read(state->s, row->array);
-    for (size_t i = 0; i < row->count; i++, l++, in += weighted_numbers * sizeof(scalar)) {
-        spring_weighted_link link = weighted_at(l, in);
-        const double rounding = sizeof(scalar) < sizeof(double) ? 4 * (double)SCALAR_EPSILON : 1e-12;
-        double inverse[4] = {0}, sum = 0, largest = 0;
-        for (int k = 0; k < 4; k++) {
-            inverse[k] = link.weight[k] != 0 ? arriving_inverse_mass(state, link.particle[k]) : 0;
-            sum += link.weight[k];
-            largest = fmax(largest, fabs(link.weight[k]));
-        }
-        const scalar banded = number_at(in, 7);
-        if (!spring_finite(sum) || !(fabs(sum) <= rounding * largest) || !scene_not_negative(link.rest) ||
-            !scene_not_negative(link.stiffness) || !scene_not_negative(link.damping) ||
-            weighted_overflows(&link, inverse) != NULL || (banded != 0 && banded != 1) ||
-            (banded == 1 && (l->slot == no_slot || three_points_of(&link).offset == 0)))
-            return false;
-    }
-    return true;
-}
-
-/* After settle_links(). */
-static void read_weighted(spring_scene *s, const section *row, const uint8_t *in)
+static void move_weighted(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     stored_weighted *l = scene_memory(s, row->array);
-    s->loose = 0;
-    for (size_t i = 0; i < row->count; i++, l++, in += weighted_numbers * sizeof(scalar)) {
-        const spring_weighted_link link = weighted_at(l, in);
-        scene_write_weighted(s, l, &link);
-        if (l->banded && number_at(in, 7) == 0) { /* before its weights were rounded, it did not fit into a band */
-            l->banded = false;
-            const link_place at = scene_slot_place(s, l->slot);
-            ((scalar *)scene_memory(s, ARRAY_BAND_STIFFNESS))[at.index] = 0;
-            ((scalar *)scene_memory(s, ARRAY_BAND_DAMPING))[at.index] = 0;
-            ((int8_t *)scene_memory(s, ARRAY_OCCUPIED))[at.slot] = 0;
-        }
-        s->damped_links += l->damping > 0;
-        s->loose += !l->banded;
+    for (size_t i = 0; i < row->count; i++, l++, state += weighted_numbers * sizeof(scalar)) {
+        scalar n[weighted_numbers] = {0, 0, 0, 0, l->rest, l->stiffness, l->damping, l->banded};
+        for (int k = 0; k < l->points; k++)
+            n[l->place[k]] = l->weight[k];
+        move_numbers(load, n, state, weighted_numbers, sizeof(scalar));
+        if (!load)
+            continue;
+        for (int k = 0; k < l->points; k++)
+            l->weight[k] = n[l->place[k]];
+        l->rest = n[4];
+        l->stiffness = n[5];
+        l->damping = n[6];
+        l->banded = n[7] != 0;
+        if (l->slot != no_slot)
+            scene_fill_slot(s, l, l->slot);
     }
 }
 
-/* Colliders. */
+/* The exact test, where products might overflow. */
+static bool weighted_fits(const arriving *a, const stored_weighted *l, const scalar n[weighted_numbers])
+{
+    spring_weighted_link link = {.stiffness = (double)n[5], .damping = (double)n[6]};
+    double inverse[4] = {0};
+    for (int k = 0; k < l->points; k++) {
+        const int place = l->place[k];
+        link.weight[place] = (double)n[place];
+        inverse[place] = n[place] != 0 ? arriving_inverse_mass(a, l->particle[k]) : 0;
+    }
+    return weighted_overflows(&link, inverse) == NULL;
+}
 
-/* The numbers of a collider, in the order of the format. */
+static bool weighted_valid(arriving *a, const section *row, uint8_t *state, bool fine)
+{
+    const double rounding = sizeof(scalar) < sizeof(double) ? 4 * (double)SCALAR_EPSILON : 1e-12;
+    const double lightest = a->lightest > 1 ? (double)a->lightest : 1;
+    const stored_weighted *l = scene_read(a->s, row->array);
+    for (size_t i = 0; i < row->count && fine; i++, l++, state += weighted_numbers * sizeof(scalar)) {
+        scalar n[weighted_numbers], weight[4] = {0};
+        double sum = 0, largest = 0;
+        copy_numbers(n, state, weighted_numbers, sizeof(scalar));
+        for (int k = 0; k < l->points; k++) {
+            weight[k] = n[l->place[k]];
+            sum += (double)weight[k];
+            largest = fabs((double)weight[k]) > largest ? fabs((double)weight[k]) : largest;
+        }
+        /* those of a band are (w, -2w, w), the middle one first */
+        const bool fits =
+            l->slot != no_slot && weight[1] != 0 && weight[1] == weight[2] && weight[0] == -2 * weight[1] && n[4] == 0;
+        const double strength = (double)(n[5] > n[6] ? n[5] : n[6]);
+        fine = fabs(sum) <= rounding * largest && n[4] >= 0 && n[5] >= 0 && n[6] >= 0 &&
+               (n[7] == 0 || (n[7] == 1 && fits)) &&
+               (8 * largest * largest * strength * lightest < (double)SCALAR_MAX || weighted_fits(a, l, n));
+    }
+    return fine;
+}
+
+/* Adds damped links to those of the scene. isotropic: whether links of rest length 0 are */
+static void count_damped_slots(spring_scene *s, const scalar *rest, const scalar *damping, size_t slots)
+{
+    uint64_t damped = 0, isotropic = 0;
+    for (size_t i = 0; i < slots; i++) {
+        damped += damping[i] > 0;
+        isotropic += damping[i] > 0 && rest[i] == 0;
+    }
+    s->damped_links += damped;
+    s->isotropic_links += s->layout.axes > 1 ? isotropic : 0;
+}
+
+/* Makes what follows from the coefficients of all links, after they have been loaded. damped: whether there was a section of
+   damping */
+static void settle_links(spring_scene *s, bool damped)
+{
+    const scene_layout *const l = &s->layout;
+    const size_t slots = l->three_point_bands > 0 ? l->band[l->bands - l->three_point_bands].slots : l->band_slots;
+    scalar *const damping = scene_memory(s, ARRAY_BAND_DAMPING), *const unbanded = scene_memory(s, ARRAY_LINK_DAMPING);
+    const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS);
+    int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
+    tether *const tethers = scene_memory(s, ARRAY_TETHERS);
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; i < slots; i++) {
+        damping[i] = damped ? damping[i] : 0;
+        occupied[i] = stiffness[i] > 0 || damping[i] > 0 ? -1 : 0;
+    }
+    for (size_t i = 0; i < l->unbanded && !damped; i++)
+        unbanded[i] = 0;
+    for (size_t i = 0; i < l->tethers && !damped; i++)
+        tethers[i].damping = 0;
+    s->damped_links = s->isotropic_links = s->loose = 0;
+    if (damped) {
+        count_damped_slots(s, scene_read(s, ARRAY_BAND_REST), damping, slots);
+        count_damped_slots(s, scene_read(s, ARRAY_LINK_REST), unbanded, l->unbanded);
+    }
+    for (size_t i = 0; i < l->weighted; i++) {
+        s->damped_links += weighted[i].damping > 0;
+        s->loose += !weighted[i].banded;
+    }
+    s->bounds_known = false;
+}
+
+#include "../simd/size_begin.h"
+
+/* Colliders: the shape and the mask, and numbers in the order of this table. */
 static const struct {
     size_t offset, count;
 } collider_numbers[] = {
@@ -632,131 +633,107 @@ static const struct {
 };
 enum { collider_fields = sizeof collider_numbers / sizeof collider_numbers[0], collider_words = 1 + 41 };
 
-static void write_colliders(const spring_scene *s, const section *row, uint8_t *out)
+static void move_collider(spring_collider *c, uint8_t *state, bool load)
 {
-    const spring_collider *const c = scene_read(s, row->array);
-    for (size_t i = 0; i < row->count; i++) {
-        const uint64_t first = c[i].shape | (uint64_t)c[i].mask << 32;
-        copy_numbers(out, &first, 1, word_bytes);
-        out += word_bytes;
-        for (int k = 0; k < collider_fields; k++) {
-            copy_numbers(out, (const char *)&c[i] + collider_numbers[k].offset, collider_numbers[k].count, word_bytes);
-            out += collider_numbers[k].count * word_bytes;
-        }
+    uint64_t first = c->shape | (uint64_t)c->mask << 32;
+    move_numbers(load, &first, state, 1, word_bytes);
+    c->shape = (spring_shape)(uint32_t)first;
+    c->mask = (uint32_t)(first >> 32);
+    state += word_bytes;
+    for (int k = 0; k < collider_fields; k++) {
+        move_numbers(load, (char *)c + collider_numbers[k].offset, state, collider_numbers[k].count, word_bytes);
+        state += collider_numbers[k].count * word_bytes;
     }
 }
 
 /* Collider i of a state, with the function of collider i of the scene. */
-static spring_collider collider_at(const spring_scene *s, const uint8_t *in, size_t i)
+static spring_collider collider_at(const spring_scene *s, uint8_t *state, size_t i)
 {
-    in += i * collider_words * word_bytes;
-    spring_collider c = {.shape = (spring_shape)(uint32_t)word_at(in), .mask = (uint32_t)(word_at(in) >> 32)};
-    if (i < s->colliders) {
-        const spring_collider *const own = scene_read(s, ARRAY_COLLIDERS);
-        c.gap = own[i].gap;
-        c.user = own[i].user;
-    }
-    in += word_bytes;
-    for (int k = 0; k < collider_fields; k++) {
-        copy_numbers((char *)&c + collider_numbers[k].offset, in, collider_numbers[k].count, word_bytes);
-        in += collider_numbers[k].count * word_bytes;
-    }
+    const spring_collider *const own = scene_read(s, ARRAY_COLLIDERS);
+    spring_collider c = {.gap = i < s->colliders ? own[i].gap : NULL, .user = i < s->colliders ? own[i].user : NULL};
+    move_collider(&c, state + i * collider_words * word_bytes, true);
     return c;
 }
 
-static bool colliders_valid(arriving *state, const section *row, const uint8_t *in)
-{
-    for (size_t i = 0; i < row->count; i++) {
-        const spring_collider c = collider_at(state->s, in, i), *own = scene_read(state->s, row->array);
-        const bool custom = i < state->s->colliders && own[i].shape == SPRING_CUSTOM;
-        if ((uint32_t)word_at(in + i * collider_words * word_bytes) > SPRING_CUSTOM ||
-            (c.shape == SPRING_CUSTOM) != custom ||
-            spring_scene_check_colliders(state->s, &c, 1, NULL, NULL) != SPRING_OK)
-            return false;
-    }
-    return true;
-}
-
-static void read_colliders(spring_scene *s, const section *row, const uint8_t *in)
+static void move_colliders(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     spring_collider *const c = scene_memory(s, row->array);
-    for (size_t i = 0; i < row->count; i++)
-        c[i] = collider_at(s, in, i);
+    for (size_t i = 0; i < row->count; i++) {
+        spring_collider copy = load ? collider_at(s, state, i) : c[i];
+        if (load)
+            c[i] = copy;
+        else
+            move_collider(&copy, state + i * collider_words * word_bytes, false);
+    }
 }
+
+static bool colliders_valid(arriving *a, const section *row, uint8_t *state, bool fine)
+{
+    const spring_collider *const own = scene_read(a->s, row->array);
+    for (size_t i = 0; i < row->count && fine; i++) {
+        const spring_collider c = collider_at(a->s, state, i);
+        const bool custom = i < a->s->colliders && own[i].shape == SPRING_CUSTOM;
+        fine = (uint32_t)c.shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
+               spring_scene_check_colliders(a->s, &c, 1, NULL, NULL) == SPRING_OK;
+    }
+    return fine;
+}
+
+#include "../simd/size_end.h"
 
 /* The particles that touch colliders, and their bits. */
 
-static void write_touching(const spring_scene *s, const section *row, uint8_t *out)
+static void move_touching(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const uint32_t *const touched = scene_read(s, touched_in(s->buffer));
+    uint32_t *const touched = scene_memory(s, row->array);
     for (size_t i = 0; i < row->count; i++)
-        set_bit(out, i, touched[i] != 0);
+        if (load)
+            touched[i] = bit_at(state, i);
+        else
+            set_bit(state, i, touched[i] != 0);
 }
 
-static bool touching_valid(arriving *state, const section *row, const uint8_t *in)
+static bool touching_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
     size_t count = 0;
     for (size_t i = 0; i < row->count; i++)
-        count += bit_at(in, i);
-    return count == state->header[WORD_TOUCHING];
+        count += bit_at(state, i);
+    return fine && count == a->header[WORD_TOUCHING];
 }
 
-static void read_touching(spring_scene *s, const section *row, const uint8_t *in)
-{
-    uint32_t *const touched = scene_memory(s, touched_in(s->buffer));
-    for (size_t i = 0; i < row->count; i++)
-        touched[i] = bit_at(in, i);
-}
-
-static void write_touched(const spring_scene *s, const section *row, uint8_t *out)
-{
-    const uint32_t *touched = scene_read(s, touched_in(s->buffer));
-    for (size_t i = 0; i < row->count; touched++)
-        if (*touched != 0) {
-            for (size_t k = 0; k < row->bits / 8; k++)
-                *out++ = (uint8_t)(*touched >> 8 * k);
-            i++;
-        }
-}
-
-static uint32_t touched_at(const section *row, const uint8_t *in, size_t i)
+static uint32_t touched_at(const section *row, const uint8_t *state, size_t i)
 {
     uint32_t bits = 0;
     for (size_t k = 0; k < row->bits / 8; k++)
-        bits |= (uint32_t)in[i * row->bits / 8 + k] << 8 * k;
+        bits |= (uint32_t)state[i * row->bits / 8 + k] << 8 * k;
     return bits;
 }
 
-static bool touched_valid(arriving *state, const section *row, const uint8_t *in)
+/* After move_touching(). */
+static void move_touched(spring_scene *s, const section *row, uint8_t *state, bool load)
+{
+    uint32_t *touched = scene_memory(s, row->array);
+    for (size_t i = 0; i < row->count; touched++) {
+        if (*touched == 0)
+            continue;
+        for (size_t k = 0; k < row->bits / 8 && !load; k++)
+            state[i * row->bits / 8 + k] = (uint8_t)(*touched >> 8 * k);
+        if (load)
+            *touched = touched_at(row, state, i);
+        i++;
+    }
+}
+
+static bool touched_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
     for (size_t i = 0; i < row->count; i++) {
-        const uint64_t bits = touched_at(row, in, i);
-        if (bits == 0 || bits >> state->header[WORD_COLLIDERS] != 0)
-            return false;
+        const uint64_t bits = touched_at(row, state, i);
+        fine = fine && bits != 0 && bits >> a->header[WORD_COLLIDERS] == 0;
     }
-    return true;
+    return fine;
 }
 
-/* After read_touching(). */
-static void read_touched(spring_scene *s, const section *row, const uint8_t *in)
-{
-    uint32_t *touched = scene_memory(s, touched_in(s->buffer));
-    for (size_t i = 0; i < row->count; touched++)
-        if (*touched != 0)
-            *touched = touched_at(row, in, i++);
-}
-
-static const section_kind quantity_section = {write_quantity, quantity_valid, read_quantity},
-                          kept_force_section = {write_quantity, any_numbers, read_quantity},
-                          masses_section = {write_masses, masses_valid, read_masses},
-                          pins_section = {write_pins, pins_valid, read_pins},
-                          rests_section = {write_rests, rests_valid, read_rests},
-                          stiffnesses_section = {write_strengths, strengths_valid, read_strengths},
-                          dampings_section = {write_strengths, dampings_valid, read_strengths},
-                          weighted_section = {write_weighted, weighted_valid, read_weighted},
-                          colliders_section = {write_colliders, colliders_valid, read_colliders},
-                          touching_section = {write_touching, touching_valid, read_touching},
-                          touched_section = {write_touched, touched_valid, read_touched};
+#include "../simd/size_begin.h"
 
 enum { most_sections = 13 };
 
@@ -768,20 +745,22 @@ static int list_sections(const spring_scene *s, const uint64_t header[WORD_COUNT
     const size_t numbers = l->axes * l->particles, particles = editable ? l->particles : 0;
     const size_t links = editable ? l->links : 0, number = 8 * sizeof(scalar);
     const size_t bodies = (size_t)header[WORD_COLLIDERS];
+    const scene_array touched = touched_in(s->buffer);
+    /* Kept forces may be infinite: RKN8 uses the last ones only in the next call, which then fails. */
     const section rows[] = {
-        {&quantity_section, positions_in(s->buffer), numbers, number},
-        {&quantity_section, velocities_in(s->buffer), numbers, number},
-        {&kept_force_section, forces_in(s->buffer), header[WORD_KEPT] != NO_FORCE ? numbers : 0, number},
-        {&quantity_section, ARRAY_HELD, holds ? numbers : 0, number},
-        {&masses_section, ARRAY_FREE_MASS, particles, number},
-        {&pins_section, ARRAY_INVERSE_MASS, particles, 1},
-        {&rests_section, ARRAY_LINK_REST, links, number},
-        {&stiffnesses_section, ARRAY_LINK_STIFFNESS, links, number},
-        {&dampings_section, ARRAY_LINK_DAMPING, header[WORD_DAMPED] > 0 ? links : 0, number},
-        {&weighted_section, ARRAY_WEIGHTED, editable ? l->weighted : 0, weighted_numbers * number},
-        {&colliders_section, ARRAY_COLLIDERS, bodies, 64 * collider_words},
-        {&touching_section, touched_in(s->buffer), bodies > 0 ? l->particles : 0, 1},
-        {&touched_section, touched_in(s->buffer), (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
+        {move_quantity, NULL, FINITE, positions_in(s->buffer), numbers, number},
+        {move_quantity, NULL, FINITE, velocities_in(s->buffer), numbers, number},
+        {move_quantity, NULL, ANY, forces_in(s->buffer), header[WORD_KEPT] != NO_FORCE ? numbers : 0, number},
+        {move_quantity, NULL, FINITE, ARRAY_HELD, holds ? numbers : 0, number},
+        {move_masses, masses_valid, NOT_NEGATIVE, ARRAY_FREE_MASS, particles, number},
+        {move_pins, pins_valid, ANY, ARRAY_INVERSE_MASS, particles, 1},
+        {move_rests, NULL, l->axes == 1 ? FINITE : NOT_NEGATIVE, ARRAY_LINK_REST, links, number},
+        {move_strengths, strengths_valid, STRENGTHS, ARRAY_LINK_STIFFNESS, links, number},
+        {move_strengths, dampings_valid, STRENGTHS, ARRAY_LINK_DAMPING, header[WORD_DAMPED] > 0 ? links : 0, number},
+        {move_weighted, weighted_valid, FINITE, ARRAY_WEIGHTED, editable ? l->weighted : 0, weighted_numbers * number},
+        {move_colliders, colliders_valid, ANY, ARRAY_COLLIDERS, bodies, 64 * collider_words},
+        {move_touching, touching_valid, ANY, touched, bodies > 0 ? l->particles : 0, 1},
+        {move_touched, touched_valid, ANY, touched, (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
     };
     int count = 0;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
@@ -796,6 +775,17 @@ static size_t state_bytes(const section *list, int count)
     for (int i = 0; i < count; i++)
         bytes += section_bytes(&list[i]);
     return bytes;
+}
+
+/* Whether all numbers of a section are valid. */
+static bool section_valid(arriving *a, const section *row, uint8_t *state)
+{
+    uint64_t headroom = 0;
+    for (double bound = 0.5; row->numbers == STRENGTHS && bound <= (double)a->lightest; bound *= 2)
+        headroom++;
+    const bool fine =
+        row->numbers == ANY || numbers_valid(state, section_bytes(row) / word_bytes, row->numbers == FINITE, headroom);
+    return row->valid == NULL ? fine : row->valid(a, row, state, fine);
 }
 
 /* ------------------------------------------------------------------------------------------------- public functions */
@@ -818,13 +808,16 @@ spring_status spring_scene_save(const spring_scene *s, void *out, size_t *bytes)
         return SPRING_ENOMEM;
     header[WORD_BYTES] = size;
     copy_numbers(out, header, WORD_COUNT, word_bytes);
+    digest d = {{0}, 0};
+    add_words(&d, out, WORD_COUNT);
     uint8_t *at = (uint8_t *)out + sizeof header;
     for (int i = 0; i < count; at += section_bytes(&list[i]), i++) {
         const size_t all = section_bytes(&list[i]), zeros = list[i].bits == 1 ? all : word_bytes;
-        memset(at + all - zeros, 0, zeros); /* padding, and the bytes to which bits are added */
-        list[i].kind->write(s, &list[i], at);
+        memset(at + all - zeros, 0, zeros);
+        list[i].move((spring_scene *)s, &list[i], at, false); /* which does not write to it */
+        add_words(&d, at, all / word_bytes);
     }
-    const uint64_t check = check_value(out, size - word_bytes);
+    const uint64_t check = check_value(&d);
     copy_numbers(at, &check, 1, word_bytes);
     return SPRING_OK;
 }
@@ -839,28 +832,27 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
     if (header[WORD_BYTES] != bytes || !header_valid(s, header))
         return SPRING_EINVAL;
     const int count = list_sections(s, header, list);
-    const uint8_t *const end = (const uint8_t *)in + bytes - word_bytes;
-    if (state_bytes(list, count) != bytes || check_value(in, bytes - word_bytes) != word_at(end))
+    if (state_bytes(list, count) != bytes)
         return SPRING_EINVAL;
-    arriving state = {.s = s, .header = header};
-    const uint8_t *at = (const uint8_t *)in + sizeof header;
-    for (int i = 0; i < count; at += section_bytes(&list[i]), i++)
-        if (!list[i].kind->valid(&state, &list[i], at))
+    uint8_t *const first = (uint8_t *)in + sizeof header, *at = first; /* nothing writes to it */
+    arriving coming = {.s = s, .header = header};
+    digest d = {{0}, 0};
+    add_words(&d, in, WORD_COUNT);
+    for (int i = 0; i < count; at += section_bytes(&list[i]), i++) {
+        add_words(&d, at, section_bytes(&list[i]) / word_bytes);
+        if (!section_valid(&coming, &list[i], at))
             return SPRING_EINVAL;
+    }
+    if (check_value(&d) != word_at(at))
+        return SPRING_EINVAL;
     for (uint32_t buffer = 0; buffer < 2; buffer++) /* without colliders no step writes them */
         if (scene_has(s, touched_in(buffer)))
             memset(scene_memory(s, touched_in(buffer)), 0, s->layout.particles * sizeof(uint32_t));
-    at = (const uint8_t *)in + sizeof header;
-    bool settled = (s->layout.flags & SPRING_SCENE_EDITABLE) == 0;
-    for (int i = 0; i < count; at += section_bytes(&list[i]), i++) {
-        if (list[i].kind == &weighted_section) { /* all coefficients of links have been read */
-            settle_links(s, header[WORD_DAMPED]);
-            settled = true;
-        }
-        list[i].kind->read(s, &list[i], at);
-    }
-    if (!settled)
-        settle_links(s, header[WORD_DAMPED]);
+    at = first;
+    for (int i = 0; i < count; at += section_bytes(&list[i]), i++)
+        list[i].move(s, &list[i], at, true);
+    if ((s->layout.flags & SPRING_SCENE_EDITABLE) != 0)
+        settle_links(s, header[WORD_DAMPED] > 0);
     s->force_cache = (cached_force)header[WORD_KEPT];
     s->colliders = (uint32_t)header[WORD_COLLIDERS];
     s->t0 = value_of(header[WORD_T0]);

@@ -72,7 +72,20 @@ static inline three_points three_points_of(const spring_weighted_link *link)
     return (three_points){up ? particle[0] : particle[2], fits ? offset : 0, weight[0]};
 }
 
-/* Stores the coefficients of a link: in its slot of a band if it fits there. */
+/* Stores the coefficients of a link in its slot of a band, with 0 if no band computes it. index: that of the slot */
+static inline void scene_fill_slot(spring_scene *s, const stored_weighted *l, size_t index)
+{
+    const double weight = (double)l->weight[1], square = l->banded ? weight * weight : 0;
+    scalar *const stiffness = scene_memory(s, ARRAY_BAND_STIFFNESS);
+    scalar *const damping = scene_memory(s, ARRAY_BAND_DAMPING);
+    int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
+    stiffness[index] = (scalar)((double)l->stiffness * square);
+    if (damping != NULL)
+        damping[index] = (scalar)((double)l->damping * square);
+    occupied[l->slot] = square > 0 && (l->stiffness > 0 || l->damping > 0) ? -1 : 0;
+}
+
+/* Stores the coefficients of a link, also in its slot of a band if it fits there. */
 static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, const spring_weighted_link *link)
 {
     for (int i = 0; i < to->points; i++)
@@ -81,17 +94,8 @@ static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, co
     to->stiffness = (scalar)link->stiffness;
     to->damping = (scalar)link->damping;
     to->banded = to->slot != no_slot && three_points_of(link).offset > 0;
-    if (to->slot == no_slot)
-        return;
-    const double weight = (double)to->weight[1], square = to->banded ? weight * weight : 0;
-    const link_place at = scene_slot_place(s, to->slot);
-    scalar *const stiffness = scene_memory(s, ARRAY_BAND_STIFFNESS), *const damping =
-                                                                         scene_memory(s, ARRAY_BAND_DAMPING);
-    int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
-    stiffness[at.index] = (scalar)((double)to->stiffness * square);
-    if (damping != NULL)
-        damping[at.index] = (scalar)((double)to->damping * square);
-    occupied[at.slot] = square > 0 && (to->stiffness > 0 || to->damping > 0) ? -1 : 0;
+    if (to->slot != no_slot)
+        scene_fill_slot(s, to, scene_slot_place(s, to->slot).index);
 }
 
 /* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the
