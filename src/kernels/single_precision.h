@@ -71,7 +71,6 @@
 #define spring_scene_end_impulses       spring_scenef_end_impulses
 #define spring_scene_impulses           spring_scenef_impulses
 #define spring_scene_describe           spring_scenef_describe
-#define spring_scene_identify           spring_scenef_identify
 #define spring_scene_load               spring_scenef_load
 #define spring_scene_save               spring_scenef_save
 #define spring_scene_set_time           spring_scenef_set_time

@@ -138,7 +138,7 @@ struct spring_scene {
     uint64_t steps;
     uint64_t damped_links, isotropic_links; /* isotropic: on two or three axes, damped and of rest length 0 */
     size_t loose;                           /* weighted links that are in no band now */
-    uint64_t ends;                          /* spring_scene_identify() */
+    uint64_t ends;                          /* a number for the ends of the links, see layout.c */
     uint32_t buffer;                        /* 0 or 1: holds the state */
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
@@ -166,10 +166,6 @@ SPRING_INTERNAL double spring_scene_balanced(const spring_scene *s, size_t parti
    which dt times the sum of 2 damping/mass over its links (damping/mass to a pin), hG, is at most `most`, and a link
    takes the smaller factor of its ends. Stores 1/(1 + (hG/2)^2) of each particle in ARRAY_SUMS, see damp_bounces(). */
 SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double dt, double most);
-
-/* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
-   also their directions, unless links may be edited. */
-SPRING_INTERNAL uint64_t spring_scene_identify(const spring_scene *s, const spring_scene_def *def);
 
 /* Adds the forces of weighted links that are not in bands, with the arguments of an unbanded_kernel. */
 SPRING_INTERNAL void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force);
@@ -321,6 +317,11 @@ static inline void scene_contact_particle(const spring_scene *s, size_t i, conta
     p->friction = friction != NULL ? (double)friction[i] : 1;
     p->bits = bits != NULL ? bits[i] : UINT32_MAX;
     p->wrong = false;
+}
+
+static inline bool scene_is_editable(const spring_scene *s)
+{
+    return (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
 }
 
 static inline bool scene_callback_uses_velocity(const spring_scene *s)

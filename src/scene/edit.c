@@ -4,11 +4,6 @@
 
 #include "../simd/size_begin.h"
 
-static bool is_editable(const spring_scene *s)
-{
-    return (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
-}
-
 /* Whether a link may replace the link with this index. */
 static bool replaces_link(const spring_scene *s, size_t index, const spring_link *link)
 {
@@ -22,7 +17,7 @@ spring_status spring_scene_set_links(spring_scene *s, size_t first, size_t count
 {
     if (s == NULL || link == NULL)
         return SPRING_EINVAL;
-    if (!is_editable(s))
+    if (!scene_is_editable(s))
         return SPRING_EDISABLED;
     if (first > s->layout.links || count > s->layout.links - first)
         return SPRING_ERANGE;
@@ -145,7 +140,7 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
 {
     if (s == NULL || array == NULL)
         return SPRING_EINVAL;
-    if (!is_editable(s))
+    if (!scene_is_editable(s))
         return SPRING_EDISABLED;
     if (p->first > s->layout.particles || p->count > s->layout.particles - p->first)
         return SPRING_ERANGE;

@@ -9,6 +9,7 @@
  *           their band are unbanded. So are the links of particles without a regular order.
  */
 #include "definition.h"
+#include "state_numbers.h"
 #include "steppers.h"
 
 #include "../simd/size_begin.h"
@@ -466,6 +467,42 @@ static void fill_weighted_links(spring_scene *s, const spring_scene_def *def)
     }
 }
 
+static uint64_t hashed_numbers(uint64_t hash, const double *number, size_t count)
+{
+    for (size_t i = 0; i < count && number != NULL; i++) {
+        const double value = number[i] + 0; /* -0 counts as 0 */
+        uint64_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        hash = hashed(hash, bits);
+    }
+    return hashed(hash, number != NULL);
+}
+
+/* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
+   also their directions, unless links may be edited. With colliders, also the arrays of particles. */
+static uint64_t identify(const spring_scene *s, const spring_scene_def *def)
+{
+    const bool directed = s->layout.axes == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    uint64_t hash = 0;
+    for (size_t i = 0; i < def->links; i++) {
+        const uint64_t a = def->link[i].a, b = def->link[i].b;
+        hash = hashed(hash, directed || a < b ? a | b << 32 : b | a << 32);
+        if (def->link[i].flags != 0)
+            hash = hashed(hash, def->link[i].flags);
+    }
+    for (size_t i = 0; i < def->weighted_links; i++)
+        for (uint64_t k = 0; k < weighted[i].points; k++)
+            hash = hashed(hash, weighted[i].particle[k] | k << 32 | (uint64_t)weighted[i].place[k] << 40);
+    if (def->colliders == 0 || (def->radius == NULL && def->friction == NULL && def->mask == NULL))
+        return hash;
+    hash = hashed_numbers(hash, def->radius, def->particles);
+    hash = hashed_numbers(hash, def->friction, def->particles);
+    for (size_t i = 0; i < def->particles && def->mask != NULL; i++)
+        hash = hashed(hash, def->mask[i]);
+    return hash;
+}
+
 enum { least_alignment = 8 }; /* [bytes] of malloc() on all systems, also with 32 bits */
 _Static_assert(_Alignof(spring_scene) <= least_alignment, "memory from malloc() can hold a scene");
 
@@ -503,7 +540,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     fill_particles(s, def);
     fill_links(s, def);
     fill_weighted_links(s, def);
-    s->ends = spring_scene_identify(s, def);
+    s->ends = identify(s, def);
     *result = s;
     return SPRING_OK;
 }

@@ -14,40 +14,6 @@
 
 #include "../simd/size_begin.h"
 
-static uint64_t hashed_numbers(uint64_t hash, const double *number, size_t count)
-{
-    for (size_t i = 0; i < count && number != NULL; i++) {
-        const double value = number[i] + 0; /* -0 counts as 0 */
-        uint64_t bits;
-        memcpy(&bits, &value, sizeof bits);
-        hash = hashed(hash, bits);
-    }
-    return hashed(hash, number != NULL);
-}
-
-uint64_t spring_scene_identify(const spring_scene *s, const spring_scene_def *def)
-{
-    const bool directed = s->layout.axes == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
-    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
-    uint64_t hash = 0;
-    for (size_t i = 0; i < def->links; i++) {
-        const uint64_t a = def->link[i].a, b = def->link[i].b;
-        hash = hashed(hash, directed || a < b ? a | b << 32 : b | a << 32);
-        if (def->link[i].flags != 0)
-            hash = hashed(hash, def->link[i].flags);
-    }
-    for (size_t i = 0; i < def->weighted_links; i++)
-        for (uint64_t k = 0; k < weighted[i].points; k++)
-            hash = hashed(hash, weighted[i].particle[k] | k << 32 | (uint64_t)weighted[i].place[k] << 40);
-    if (def->colliders == 0 || (def->radius == NULL && def->friction == NULL && def->mask == NULL))
-        return hash;
-    hash = hashed_numbers(hash, def->radius, def->particles);
-    hash = hashed_numbers(hash, def->friction, def->particles);
-    for (size_t i = 0; i < def->particles && def->mask != NULL; i++)
-        hash = hashed(hash, def->mask[i]);
-    return hash;
-}
-
 /* ----------------------------------------------------------------------------------------------------------- header */
 
 /* All members are words. Those before `bytes` must be equal in the scene that loads the state. */
@@ -55,7 +21,7 @@ typedef struct state_header {
     uint64_t magic, version;
     uint64_t precision; /* [bytes] of a number */
     uint64_t axes, flags, methods, most_colliders, particles, links, weighted_links;
-    uint64_t ends; /* spring_scene_identify() */
+    uint64_t ends; /* spring_scene.ends */
     uint64_t callback;
     uint64_t bytes;    /* of the state */
     uint64_t kept;     /* cached_force */
@@ -72,19 +38,14 @@ typedef struct state_header {
 enum { header_words = 25, format_version = 1 };
 _Static_assert(sizeof(state_header) == header_words * word_bytes, "a header consists of words");
 
-static bool is_editable_scene(const spring_scene *s)
-{
-    return (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
-}
-
 static uint64_t count_damped(const spring_scene *s)
 {
     uint64_t count = s->damped_links;
     const tether *const tethers = scene_read(s, ARRAY_TETHERS);
     const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
-    for (size_t i = 0; i < s->layout.weighted && is_editable_scene(s); i++)
+    for (size_t i = 0; i < s->layout.weighted && scene_is_editable(s); i++)
         count -= weighted[i].damping > 0;
-    for (size_t i = 0; i < s->layout.tethers && is_editable_scene(s); i++)
+    for (size_t i = 0; i < s->layout.tethers && scene_is_editable(s); i++)
         count += tethers[i].damping > 0 && !(scene_link(s, tethers[i].link).damping > 0);
     return count;
 }
@@ -131,7 +92,7 @@ static bool header_valid(const spring_scene *s, const state_header *h)
             return false;
     const bool predicts = l->offset[ARRAY_FORCE_1] != l->offset[ARRAY_FORCE_0];
     return memcmp(h, &own, offsetof(state_header, bytes)) == 0 && h->kept <= (predicts ? PREDICTED_FORCE : FORCE) &&
-           (is_editable_scene(s) ? h->damped <= l->links : h->damped == own.damped) && h->bodies <= l->colliders &&
+           (scene_is_editable(s) ? h->damped <= l->links : h->damped == own.damped) && h->bodies <= l->colliders &&
            h->touching <= (h->bodies > 0 ? l->particles : 0) && scene_fits(h->dt) && h->colliders_from <= h->steps &&
            spring_finite(h->t0 + (double)h->steps * h->dt) &&
            spring_finite(h->colliders_base + (double)(h->steps - h->colliders_from) * h->dt);
@@ -186,28 +147,32 @@ static void move_masses(spring_scene *s, const section *row, uint8_t *state, boo
 
 static bool masses_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
-    a->masses = state;
-    a->pins = state + section_bytes(row);
+    const uint8_t *const pins = state + section_bytes(row);
+    scalar least = SCALAR_MAX, lightest = 0;
     for (size_t i = 0; i < row->count; i++) {
-        const scalar inverse = number_at(a->masses, i);
-        if (bit_at(a->pins, i))
+        const scalar inverse = number_at(state, i);
+        if (bit_at(pins, i))
             continue;
-        fine = fine && inverse > 0;
-        a->lightest = inverse > a->lightest ? inverse : a->lightest;
+        least = inverse < least ? inverse : least;
+        lightest = inverse > lightest ? inverse : lightest;
     }
-    return fine && scene_fits(a->s->drag * (double)a->lightest);
+    a->masses = state;
+    a->pins = pins;
+    a->lightest = lightest;
+    return fine && least > 0 && scene_fits(a->s->drag * (double)lightest);
 }
 
 static void move_pins(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const scalar *const freed = scene_read(s, ARRAY_FREE_MASS);
     scalar *const inverse = scene_memory(s, row->array);
-    unsigned byte = 0;
-    for (size_t i = 0; i < row->count; i++)
-        if (load)
-            inverse[i] = bit_at(state, i) ? 0 : freed[i];
-        else
-            append_bit(state, i, inverse[i] == 0, &byte);
+    if (load)
+        memcpy(inverse, scene_read(s, ARRAY_FREE_MASS), row->count * sizeof *inverse);
+    for (size_t i = 0; i < row->count && load; i = next_bit(state, i))
+        if (bit_at(state, i))
+            inverse[i] = 0;
+    for (size_t i = 0; i < row->count && !load; i++)
+        if (inverse[i] == 0)
+            set_bit(state, i);
 }
 
 /* Coefficients of the links of an editable scene, in the order of their indices. The scene has them by slot. */
@@ -405,7 +370,7 @@ static void settle_links(spring_scene *s, bool damped)
     for (size_t i = 0; i < l->tethers && !damped; i++)
         tethers[i].damping = 0;
     for (size_t i = 0; i < slots; i++)
-        occupied[i] = stiffness[i] > 0 || damping[i] > 0 ? -1 : 0;
+        occupied[i] = stiffness[i] + damping[i] > 0 ? -1 : 0;
     for (size_t i = 0; i < l->weighted; i++) {
         s->damped_links += weighted[i].damping > 0;
         s->loose += !weighted[i].banded;
@@ -474,19 +439,18 @@ static bool colliders_valid(arriving *a, const section *row, uint8_t *state, boo
 
 static void move_touching(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    uint32_t *const touched = scene_memory(s, row->array);
-    unsigned byte = 0;
-    for (size_t i = 0; i < row->count; i++)
-        if (load)
-            touched[i] = bit_at(state, i);
-        else
-            append_bit(state, i, touched[i] != 0, &byte);
+    uint32_t *const touched = scene_memory(s, row->array); /* 0 for load */
+    for (size_t i = 0; i < row->count && load; i = next_bit(state, i))
+        touched[i] = bit_at(state, i);
+    for (size_t i = 0; i < row->count && !load; i++)
+        if (touched[i] != 0)
+            set_bit(state, i);
 }
 
 static bool touching_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
     size_t count = 0;
-    for (size_t i = 0; i < row->count; i++)
+    for (size_t i = 0; i < row->count; i = next_bit(state, i))
         count += bit_at(state, i);
     return fine && count == a->header->touching;
 }
@@ -528,7 +492,7 @@ enum { most_sections = 13 };
 static void list_sections(const spring_scene *s, const state_header *h, section list[most_sections])
 {
     const scene_layout *const l = &s->layout;
-    const bool editable = is_editable_scene(s), holds = (l->flags & SPRING_SCENE_FORCES) != 0;
+    const bool editable = scene_is_editable(s), holds = (l->flags & SPRING_SCENE_FORCES) != 0;
     const size_t number = 8 * sizeof(scalar), numbers = l->axes * l->particles,
                  kept = h->kept != NO_FORCE ? numbers : 0;
     const size_t particles = editable ? l->particles : 0, links = editable ? l->links : 0;
@@ -590,7 +554,8 @@ spring_status spring_scene_save(const spring_scene *s, void *out, size_t *bytes)
     for (int i = 0; i < most_sections; at += section_bytes(&list[i++])) {
         if (list[i].count == 0)
             continue;
-        memset(at + section_bytes(&list[i]) - word_bytes, 0, word_bytes); /* padding */
+        const size_t all = section_bytes(&list[i]), zeros = list[i].bits == 1 ? all : word_bytes;
+        memset(at + all - zeros, 0, zeros); /* padding, and bits */
         list[i].move((spring_scene *)s, &list[i], at, false);
     }
     const uint64_t check = check_value(out, *bytes - word_bytes);
@@ -622,7 +587,7 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
     for (int i = 0; i < most_sections; at += section_bytes(&list[i++]))
         if (list[i].count > 0)
             list[i].move(s, &list[i], at, true);
-    if (is_editable_scene(s))
+    if (scene_is_editable(s))
         settle_links(s, h.damped > 0);
     s->force_cache = (cached_force)h.kept;
     s->colliders = (uint32_t)h.bodies;

@@ -66,11 +66,16 @@ static inline bool bit_at(const uint8_t *state, size_t i)
     return (state[i / 8] >> i % 8 & 1) != 0;
 }
 
-/* Stores bit i, the last one so far. byte: the bits before it in its byte */
-static inline void append_bit(uint8_t *state, size_t i, bool bit, unsigned *byte)
+/* Sets bit i, which is 0. */
+static inline void set_bit(uint8_t *state, size_t i)
 {
-    *byte = (i % 8 == 0 ? 0 : *byte) | (unsigned)bit << i % 8;
-    state[i / 8] = (uint8_t)*byte;
+    state[i / 8] = (uint8_t)(state[i / 8] | 1 << i % 8);
+}
+
+/* A bit after bit i, so that those in between are 0. */
+static inline size_t next_bit(const uint8_t *state, size_t i)
+{
+    return state[i / 8] == 0 ? i / 8 * 8 + 8 : i + 1;
 }
 
 /* `hash` with one more word. */

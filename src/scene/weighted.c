@@ -149,7 +149,7 @@ spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, siz
 {
     if (s == NULL || link == NULL)
         return SPRING_EINVAL;
-    if ((s->layout.flags & SPRING_SCENE_EDITABLE) == 0)
+    if (!scene_is_editable(s))
         return SPRING_EDISABLED;
     if (first > s->layout.weighted || count > s->layout.weighted - first)
         return SPRING_ERANGE;
