@@ -98,7 +98,7 @@ spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene 
 {
     if (s == NULL || (torn == NULL && capacity > 0))
         return SPRING_EINVAL;
-    if ((s->layout.flags & SPRING_SCENE_EDITABLE) == 0)
+    if (!scene_is_editable(s))
         return SPRING_EDISABLED;
     const double least = limit != NULL ? least_limit(limit, s->layout.links) : stretch;
     if (!(least >= 0))

@@ -32,6 +32,51 @@ static void must(bool holds, const char *what)
     abort();
 }
 
+enum { most_particles = 48, most_links = 300 };
+
+/* The arrays of a definition. */
+typedef struct arrays {
+    double position[3 * most_particles], radius[most_particles], friction[most_particles];
+    double distance[2 * most_particles];
+    uint8_t pinned[most_particles];
+    uint32_t mask[most_particles], work[3 * most_particles];
+    spring_link link[most_links];
+    spring_weighted_link weighted[most_particles];
+} arrays;
+
+/* Tethers, weighted links in a band and elsewhere, and particles with contacts of their own. */
+static void enrich(spring_scene_def *def, arrays *y)
+{
+    size_t tethers = most_links - def->links;
+    if (def->axes > 1) {
+        must(spring_links_tethers(def, 0.05, 0.1, y->link + def->links, &tethers, y->work, y->distance) == SPRING_OK,
+             "tethers");
+        for (size_t i = 0; i < tethers; i++)
+            y->link[def->links + i].damping = i % 2 == 0 ? 0.01 : 0;
+        def->links += tethers;
+    }
+    def->weighted_links = def->particles - 3;
+    def->weighted_link = y->weighted;
+    for (uint32_t i = 0; i < def->weighted_links; i++) {
+        const bool band = i % 5 != 4;
+        y->weighted[i] = (spring_weighted_link){.particle = {i, i + 1, i + 2, i + 3},
+                                                .weight = {band ? 1 : -0.25, band ? -2 : -0.25, band ? 1 : -0.5, !band},
+                                                .rest = i % 10 == 9 ? 0.1 : 0,
+                                                .stiffness = 3,
+                                                .damping = i % 4 * 0.01};
+    }
+    for (uint32_t i = 0; i < def->particles; i++) {
+        y->radius[i] = 0.01 * (i % 3);
+        y->friction[i] = i % 4;
+        y->mask[i] = i % 4;
+    }
+    if (def->colliders > 0) {
+        def->radius = y->radius;
+        def->friction = y->friction;
+        def->mask = y->mask;
+    }
+}
+
 static spring_scene *make(void *memory, unsigned kind)
 {
     const spring_grid g = {
@@ -44,24 +89,40 @@ static spring_scene *make(void *memory, unsigned kind)
         .damping = kind & 4 ? 0.1 : 0,
         .pinned = SPRING_GRID_FIRST_X,
     };
-    static double position[3 * 48];
-    static uint8_t pinned[48];
-    static spring_link link[200];
+    static arrays y;
     spring_scene_def def = {.axes = g.axes,
                             .flags = (kind & 8 ? SPRING_SCENE_EDITABLE : 0) | (kind & 16 ? SPRING_SCENE_FORCES : 0),
-                            .position = position,
-                            .pinned = pinned,
-                            .link = link,
+                            .position = y.position,
+                            .pinned = y.pinned,
+                            .link = y.link,
                             .drag = 0.1,
                             .colliders = g.axes > 1 ? 9 : 0};
+    const bool rich = (kind & 32) != 0;
     spring_scene *s = NULL;
-    must(spring_grid_size(&g, &def.particles, &def.links) == SPRING_OK && def.links <= 200 &&
-             spring_grid_fill(&g, position, pinned, link) == SPRING_OK &&
-             spring_scene_bytes(&def, &block) == SPRING_OK && spring_scene_init(memory, room, &def, &s) == SPRING_OK,
+    must(spring_grid_size(&g, &def.particles, &def.links) == SPRING_OK && def.particles <= most_particles &&
+             def.links <= most_links && spring_grid_fill(&g, y.position, y.pinned, y.link) == SPRING_OK,
+         "a grid");
+    if (rich)
+        enrich(&def, &y);
+    must(spring_scene_bytes(&def, &block) == SPRING_OK && spring_scene_init(memory, room, &def, &s) == SPRING_OK,
          "a scene");
-    const spring_collider c = {.shape = SPRING_SPHERE, .at = {0.1, 0.1, 0}, .radius = 0.11, .velocity = {0.1}};
+    const spring_collider c[] = {
+        {.shape = SPRING_SPHERE, .at = {0.1, 0.1, 0}, .radius = 0.11, .velocity = {0.1}},
+        {.shape = SPRING_BOX,
+         .at = {0.4, 0.1, 0},
+         .axis = {{1}, {0, 1}, {0, 0, 1}},
+         .half = {0.1, 0.15, 0.1},
+         .velocity = {0.1},
+         .spin = {0, 0, 1},
+         .friction = 0.4,
+         .restitution = 0.2,
+         .acceleration = {0, 0.3},
+         .spin_acceleration = {0, 0, 0.5},
+         .surface = {0.1},
+         .mask = 2},
+    };
     if (def.colliders > 0)
-        must(spring_scene_set_colliders(s, &c, 1) == SPRING_OK, "a collider");
+        must(spring_scene_set_colliders(s, c, rich ? 2 : 1) == SPRING_OK, "colliders");
     must(spring_scene_advance(s, SPRING_LEAPFROG, 1e-3, 20) == SPRING_OK, "steps");
     return s;
 }
@@ -79,7 +140,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     enum { change = 10 }; /* bytes: two for the word, eight for its value */
     if (size == 0)
         return 0;
-    const unsigned kind = data[0] % 32;
+    const unsigned kind = data[0] % 64;
     spring_scene *const s = make(memory, kind);
     size_t bytes = save(s, state);
     if (data[0] < 64) {
@@ -107,6 +168,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     (void)spring_scene_stable_step(s, SPRING_LEAPFROG);
     (void)spring_scene_energy(s);
     (void)spring_scene_at_rest(s, 1, 1);
+    (void)spring_scene_set_pinned(s, 5, 1, &(uint8_t){1}); /* tethers act, or cease to */
     (void)spring_scene_advance(s, SPRING_LEAPFROG, 1e-3, 3);
     (void)spring_scene_advance(s, SPRING_SYMPLECTIC_EULER, 2e-3, 3);
     (void)spring_scene_save(s, state, &(size_t){most_bytes});
