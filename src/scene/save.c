@@ -359,8 +359,8 @@ static void settle_links(spring_scene *s, bool damped)
 {
     const scene_layout *const l = &s->layout;
     const size_t slots = l->three_point_bands > 0 ? l->band[l->bands - l->three_point_bands].slots : l->band_slots;
-    const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *const damping =
-                                                                             scene_read(s, ARRAY_BAND_DAMPING);
+    const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS);
+    const scalar *const damping = scene_read(s, ARRAY_BAND_DAMPING);
     const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
@@ -427,7 +427,8 @@ static bool colliders_valid(arriving *a, const section *row, uint8_t *state, boo
     for (size_t i = 0; i < row->count && fine; i++) {
         const spring_collider c = moved_collider(a->s, state, i, true);
         const bool custom = i < a->s->colliders && own[i].shape == SPRING_CUSTOM;
-        fine = (uint32_t)c.shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
+        const uint32_t shape = (uint32_t)word_at(state + i * collider_words * word_bytes);
+        fine = shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
                spring_scene_check_colliders(a->s, &c, 1, NULL, NULL) == SPRING_OK;
     }
     return fine;

@@ -22,6 +22,8 @@
 
 enum { room = 1 << 18, most_bytes = 1 << 15 };
 
+enum { kinds = 64 };
+
 static size_t block; /* [bytes] of the scene */
 
 static void must(bool holds, const char *what)
@@ -127,6 +129,19 @@ static spring_scene *make(void *memory, unsigned kind)
     return s;
 }
 
+/* A scene, which is made only once. */
+static spring_scene *scene_of(void *memory, unsigned kind)
+{
+    static _Alignas(SPRING_SCENE_ALIGN) uint8_t made[kinds][room];
+    static size_t blocks[kinds];
+    if (blocks[kind] == 0) {
+        (void)make(made[kind], kind);
+        blocks[kind] = block;
+    }
+    block = blocks[kind];
+    return memcpy(memory, made[kind], block);
+}
+
 static size_t save(const spring_scene *s, uint8_t *state)
 {
     size_t size = most_bytes;
@@ -140,8 +155,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     enum { change = 10 }; /* bytes: two for the word, eight for its value */
     if (size == 0)
         return 0;
-    const unsigned kind = data[0] % 64;
-    spring_scene *const s = make(memory, kind);
+    const unsigned kind = data[0] % kinds;
+    spring_scene *const s = scene_of(memory, kind);
     size_t bytes = save(s, state);
     if (data[0] < 64) {
         for (const uint8_t *at = data + 1; at + change <= data + size; at += change)
