@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Saving and loading the state of a scene, and setting its time.
+ * Saving and loading the state of a scene.
  *
  * Format    Little-endian: a header of 64-bit words, sections of numbers, each padded with zeros to a multiple of 8
  *           bytes, and a check value. docs/details.md describes it. list_sections() is the only list of the sections:
@@ -600,36 +600,6 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
     scene_clear_impulses(s);
     scene_store_gravity(s, h.gravity);
     return SPRING_OK;
-}
-
-spring_status spring_scene_set_time(spring_scene *s, double t)
-{
-    if (s == NULL || !spring_finite(t))
-        return SPRING_EINVAL;
-    s->colliders_base = colliders_time(s);
-    s->colliders_from = 0;
-    s->t0 = t;
-    s->dt = 0;
-    s->steps = 0;
-    if (s->force != NULL) /* it may depend on the time */
-        scene_drop_forces(s);
-    return SPRING_OK;
-}
-
-spring_scene_info spring_scene_describe(const spring_scene *s)
-{
-    if (s == NULL)
-        return (spring_scene_info){0};
-    const scene_layout *const l = &s->layout;
-    return (spring_scene_info){
-        .particles = l->particles,
-        .links = l->links,
-        .weighted_links = l->weighted,
-        .axes = l->axes,
-        .flags = l->flags,
-        .methods = l->methods,
-        .colliders = l->colliders,
-    };
 }
 
 #include "../simd/size_end.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading and setting the state of a scene: positions, velocities, energies, tension, gravity and the callback. */
+/* Reading and setting the state of a scene: positions, velocities, energies, tension, gravity, the callback and the
+   time. */
 #include "../kernels/link_law.h"
 #include "weighted_links.h"
 
@@ -158,4 +159,34 @@ spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *for
     s->user = user;
     scene_drop_forces(s);
     return SPRING_OK;
+}
+
+spring_status spring_scene_set_time(spring_scene *s, double t)
+{
+    if (s == NULL || !spring_finite(t))
+        return SPRING_EINVAL;
+    s->colliders_base = colliders_time(s);
+    s->colliders_from = 0;
+    s->t0 = t;
+    s->dt = 0;
+    s->steps = 0;
+    if (s->force != NULL) /* it may depend on the time */
+        scene_drop_forces(s);
+    return SPRING_OK;
+}
+
+spring_scene_info spring_scene_describe(const spring_scene *s)
+{
+    if (s == NULL)
+        return (spring_scene_info){0};
+    const scene_layout *const l = &s->layout;
+    return (spring_scene_info){
+        .particles = l->particles,
+        .links = l->links,
+        .weighted_links = l->weighted,
+        .axes = l->axes,
+        .flags = l->flags,
+        .methods = l->methods,
+        .colliders = l->colliders,
+    };
 }
