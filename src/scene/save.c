@@ -211,8 +211,9 @@ static void move_coefficients(spring_scene *s, const section *row, uint8_t *stat
     }
 }
 
-/* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored like
-   that, other links with the sign for their order of the ends. With more axes, links with flags are stored with a sign. */
+/* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored
+   like that, other links with the sign for their order of the ends. With more axes, links with flags are stored with a
+   sign. */
 static void move_rests(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     const coefficients c = coefficients_of(s, row->array);
@@ -395,7 +396,7 @@ static const struct {
 };
 enum { collider_fields = sizeof collider_numbers / sizeof collider_numbers[0], collider_words = 1 + 41 };
 
-/* Collider i, after it has been loaded, with the function of collider i of the scene; or as it is, after it has been saved. */
+/* Collider i: as it is, after it has been saved, or loaded, with the function of collider i of the scene. */
 static spring_collider moved_collider(const spring_scene *s, uint8_t *state, size_t i, bool load)
 {
     const spring_collider *const own = scene_read(s, ARRAY_COLLIDERS);

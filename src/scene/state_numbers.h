@@ -110,8 +110,8 @@ typedef uint64_t word_group __attribute__((vector_size(2 * sizeof(uint64_t))));
 typedef uint64_t word_group;
 #endif
 
-/* In single precision, a word has two numbers. The result has the signs of those that are not valid: for any_sign, adding
-   `one` to an exponent that is too large carries into the sign. */
+/* In single precision, a word has two numbers. The result has the signs of those that are not valid: for any_sign,
+   adding `one` to an exponent that is too large carries into the sign. */
 SPRING_INLINE word_group invalid_signs(const uint8_t *state, size_t words, uint64_t one, bool any_sign)
 {
     const uint64_t exponents =
@@ -142,8 +142,8 @@ SPRING_INLINE bool all_valid(const uint8_t *state, size_t bytes, uint64_t one, b
     return (all & signs) == 0;
 }
 
-/* Whether all numbers of a padded section are finite, also if they are multiplied by a number below 2^headroom, which is less
-   than the largest; and not negative, unless any_sign. */
+/* Whether all numbers of a padded section are finite, also if they are multiplied by a number below 2^headroom, which is
+   less than the largest; and not negative, unless any_sign. */
 static inline bool numbers_valid(const uint8_t *state, size_t bytes, bool any_sign, uint64_t headroom)
 {
     const uint64_t last_bits =
