@@ -56,8 +56,10 @@ static step_terms euler_terms(step_rates r)
     return exponential_terms(r, 1);
 }
 
+static const spring_method_info euler_info = {
+    .name = "euler", .order = 1, .forces_per_step = 1, .springs = true, .scenes = true, .label = "Euler"};
 static const method_row euler_method = {
-    .info = {.name = "euler", .order = 1, .forces_per_step = 1, .springs = true, .scenes = true, .label = "Euler"},
+    .info = &euler_info,
     .kernel = spring_step_euler,
     .stable_step = euler_stable_step,
     .terms = euler_terms,

@@ -12,8 +12,10 @@ static double exact_stable_step(const spring_roots *r)
     return (double)INFINITY;
 }
 
+static const spring_method_info exact_info = {
+    .name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true, .label = "exact"};
 static const method_row exact_method = {
-    .info = {.name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true, .label = "exact"},
+    .info = &exact_info,
     .kernel = spring_step_exact,
     .stable_step = exact_stable_step,
     .digest = UINT64_C(0x00349312ac922285),

@@ -68,14 +68,15 @@ static step_terms leapfrog_terms(step_rates r)
     };
 }
 
+static const spring_method_info leapfrog_info = {.name = "leapfrog",
+                                                 .order = 2,
+                                                 .forces_per_step = 1,
+                                                 .symplectic = true,
+                                                 .springs = true,
+                                                 .scenes = true,
+                                                 .label = "leapfrog"};
 static const method_row leapfrog_method = {
-    .info = {.name = "leapfrog",
-             .order = 2,
-             .forces_per_step = 1,
-             .symplectic = true,
-             .springs = true,
-             .scenes = true,
-             .label = "leapfrog"},
+    .info = &leapfrog_info,
     .kernel = spring_step_leapfrog,
     .stable_step = leapfrog_stable_step,
     .terms = leapfrog_terms,

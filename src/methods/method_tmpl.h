@@ -50,7 +50,7 @@ SPRING_INLINE real keeps_nothing(real x, const step_coefficients *c, bool loaded
 
 #ifndef SPRING_VECTOR
 typedef struct method_row {
-    spring_method_info info;
+    const spring_method_info *info;
     spring_step_fn *kernel;                       /* NULL: not for springs */
     double (*stable_step)(const spring_roots *r); /* [s] */
     step_terms_fn *terms;                         /* NULL: the error of a step is rounding error only */

@@ -110,8 +110,10 @@ static step_terms rk4_terms(step_rates r)
     return exponential_terms(r, 4);
 }
 
+static const spring_method_info rk4_info = {
+    .name = "rk4", .order = 4, .forces_per_step = 4, .springs = true, .scenes = true, .label = "RK4"};
 static const method_row rk4_method = {
-    .info = {.name = "rk4", .order = 4, .forces_per_step = 4, .springs = true, .scenes = true, .label = "RK4"},
+    .info = &rk4_info,
     .kernel = spring_step_rk4,
     .stable_step = rk4_stable_step,
     .terms = rk4_terms,

@@ -24,8 +24,10 @@
 #include "method_tmpl.h"
 
 #ifndef SPRING_VECTOR
+static const spring_method_info rkn8_info = {
+    .name = "rkn8", .order = 8, .forces_per_step = 8, .scenes = true, .label = "RKN8", .positions_only = true};
 static const method_row rkn8_method = {
-    .info = {.name = "rkn8", .order = 8, .forces_per_step = 8, .scenes = true, .label = "RKN8", .positions_only = true},
+    .info = &rkn8_info,
     .digest = UINT64_C(0x74494ed0e40a48e5),
 };
 #endif

@@ -25,14 +25,15 @@
 #include "method_tmpl.h"
 
 #ifndef SPRING_VECTOR
+static const spring_method_info srkn6_info = {.name = "srkn6",
+                                              .order = 6,
+                                              .forces_per_step = 11,
+                                              .symplectic = true,
+                                              .scenes = true,
+                                              .label = "SRKN6",
+                                              .positions_only = true};
 static const method_row srkn6_method = {
-    .info = {.name = "srkn6",
-             .order = 6,
-             .forces_per_step = 11,
-             .symplectic = true,
-             .scenes = true,
-             .label = "SRKN6",
-             .positions_only = true},
+    .info = &srkn6_info,
     .digest = UINT64_C(0x622b7f6e0da7bdbf),
 };
 #endif

@@ -57,14 +57,15 @@ static step_terms symplectic_euler_terms(step_rates r)
     return (step_terms){.implicit = 1, .term = {[1] = {r.G, r.a, -r.c, 0}, {-r.a * r.c, 0, 0, 0}}};
 }
 
+static const spring_method_info symplectic_euler_info = {.name = "symplectic-euler",
+                                                         .order = 1,
+                                                         .forces_per_step = 1,
+                                                         .symplectic = true,
+                                                         .springs = true,
+                                                         .scenes = true,
+                                                         .label = "symplectic Euler"};
 static const method_row symplectic_euler_method = {
-    .info = {.name = "symplectic-euler",
-             .order = 1,
-             .forces_per_step = 1,
-             .symplectic = true,
-             .springs = true,
-             .scenes = true,
-             .label = "symplectic Euler"},
+    .info = &symplectic_euler_info,
     .kernel = spring_step_symplectic_euler,
     .stable_step = symplectic_euler_stable_step,
     .terms = symplectic_euler_terms,

@@ -7,10 +7,13 @@
 #include "propagator.h"
 #include "self_test.h"
 
-#define METHOD_ROW(value, row) [value] = &(row),
+#define INFO_ROW(value, info, row) [value] = &(info),
+static const spring_method_info *const all_infos[SPRING_METHOD_COUNT] = {METHODS(INFO_ROW)};
+
+#define METHOD_ROW(value, info, row) [value] = &(row),
 static const method_row *const all_methods[SPRING_METHOD_COUNT] = {METHODS(METHOD_ROW)};
 
-#define ORDER_ROW(value, row) value,
+#define ORDER_ROW(value, info, row) value,
 static const spring_method table_order[] = {METHODS(ORDER_ROW)};
 _Static_assert(sizeof table_order / sizeof table_order[0] == SPRING_METHOD_COUNT,
                "each method has one row in methods.h");
@@ -55,8 +58,8 @@ spring_status spring_advance(spring_state *s, const spring_params *p, spring_met
     const spring_rates r = spring_rates_of(p);
     if (!finite_state(now) || !spring_rates_valid(p, &r))
         return SPRING_EINVAL;
-    if (n == 0 || dt == 0 || !method->info.springs)
-        return method->info.springs ? SPRING_OK : SPRING_EUNSUPPORTED;
+    if (n == 0 || dt == 0 || !method->info->springs)
+        return method->info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
     while (n > 0) {
         const uint64_t some = n < SPRING_CHECK_INTERVAL || m == SPRING_EXACT ? n : SPRING_CHECK_INTERVAL;
         now = advance_spring(m, now, p, &r, dt, some);
@@ -98,7 +101,7 @@ static accuracy accuracy_of(const spring_params *p, const method_row *method, do
     const double angle = spring_sqrt(r.omega2) * duration;
     return (accuracy){
         .terms = method->terms,
-        .order = method->info.order,
+        .order = method->info->order,
         .whole = {.a = fmax(angle, 1), .c = fmin(angle, 1) * angle, .G = r.gamma * duration},
     };
 }
@@ -111,7 +114,7 @@ static bool positive(double a)
 double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance)
 {
     const method_row *method = find_method(m);
-    if (method == NULL || !method->info.springs || !spring_params_valid(p) || !positive(duration) ||
+    if (method == NULL || !method->info->springs || !spring_params_valid(p) || !positive(duration) ||
         !positive(tolerance))
         return (double)NAN;
     if (method->terms == NULL)
@@ -123,7 +126,7 @@ double spring_accurate_step(const spring_params *p, spring_method m, double dura
 double spring_step_error(const spring_params *p, spring_method m, double duration, double dt)
 {
     const method_row *method = find_method(m);
-    if (method == NULL || !method->info.springs || !spring_params_valid(p) || !positive(duration) || !positive(dt))
+    if (method == NULL || !method->info->springs || !spring_params_valid(p) || !positive(duration) || !positive(dt))
         return (double)NAN;
     if (method->terms == NULL)
         return 0;
@@ -144,14 +147,14 @@ bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol,
 
 const spring_method_info *spring_method_describe(spring_method m)
 {
-    const method_row *method = find_method(m);
-    return method != NULL ? &method->info : NULL;
+    const size_t index = (size_t)m;
+    return index < SPRING_METHOD_COUNT ? all_infos[index] : NULL;
 }
 
 const char *spring_method_name(spring_method m)
 {
-    const method_row *method = find_method(m);
-    return method != NULL ? method->info.name : NULL;
+    const spring_method_info *info = spring_method_describe(m);
+    return info != NULL ? info->name : NULL;
 }
 
 spring_step_fn *spring_method_kernel(spring_method m)

@@ -7,7 +7,7 @@
 
 #include "check.h"
 
-#define METHOD(value, row) &(row),
+#define METHOD(value, info, row) &(row),
 static const method_row *const methods[] = {METHODS(METHOD)};
 static const spring_method steppers[] = {
 #define STEPPER(value, prepare, start, step) value,
@@ -81,8 +81,8 @@ static void methods_are_complete(void)
     int for_springs = 0;
     for (size_t m = 0; m < SPRING_METHOD_COUNT; m++) {
         const method_row *method = methods[m];
-        CHECK(method->info.springs == (method->kernel != NULL && method->stable_step != NULL), method->info.name);
-        for_springs += method->info.springs && strcmp(method->info.name, "exact") != 0;
+        CHECK(method->info->springs == (method->kernel != NULL && method->stable_step != NULL), method->info->name);
+        for_springs += method->info->springs && strcmp(method->info->name, "exact") != 0;
     }
     CHECK(for_springs == stepper_count, "each has a formula");
 }

@@ -8,10 +8,10 @@
 #include <springstep/scene.h>
 
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define EXPORT(name) __attribute__((export_name(#name), used))
+#include "memory.h"
 
 /* The callback of the scene that is being called, in JavaScript. */
 __attribute__((import_module("springstep"), import_name("force"))) void call_force(double t,
@@ -79,12 +79,12 @@ EXPORT(scene_free) void scene_free(shown *s)
 {
     if (s == NULL)
         return;
-    free(s->scene);
-    free(s->saved);
-    free(s->before);
-    free(s->now);
-    free(s->positions);
-    free(s);
+    give_back(s->scene);
+    give_back(s->saved);
+    give_back(s->before);
+    give_back(s->now);
+    give_back(s->positions);
+    give_back(s);
 }
 
 /* The one definition that is being filled. */
@@ -163,7 +163,7 @@ EXPORT(scene_show) const float *scene_show(shown *s)
    axis writes. */
 EXPORT(scene_new) shown *scene_new(uint32_t component, const float *base)
 {
-    shown *s = calloc(1, sizeof *s);
+    shown *s = take_zeros(1, sizeof *s);
     if (s == NULL)
         return NULL;
     s->axes = def.axes > 0 ? def.axes : 3;
@@ -171,8 +171,8 @@ EXPORT(scene_new) shown *scene_new(uint32_t component, const float *base)
     s->particles = def.particles;
     s->links = def.links;
     spring_scene_bytes(&def, &s->bytes);
-    void *memory = malloc(s->bytes);
-    s->positions = calloc(3 * s->particles, sizeof *s->positions);
+    void *memory = take(s->bytes);
+    s->positions = take_zeros(3 * s->particles, sizeof *s->positions);
     if (memory != NULL && s->positions != NULL && spring_scene_init(memory, s->bytes, &def, &s->scene) == SPRING_OK) {
         if (base != NULL)
             memcpy(s->positions, base, 3 * s->particles * sizeof *base);
@@ -180,7 +180,7 @@ EXPORT(scene_new) shown *scene_new(uint32_t component, const float *base)
         return s;
     }
     if (s->scene == NULL)
-        free(memory);
+        give_back(memory);
     scene_free(s);
     return NULL;
 }
@@ -214,16 +214,16 @@ EXPORT(scene_moved) const float *scene_moved(shown *s)
 static bool begin_frames(shown *s)
 {
     const size_t numbers = s->particles * s->axes;
-    s->saved = malloc(s->bytes);
-    s->before = calloc(numbers, sizeof *s->before);
-    s->now = calloc(numbers, sizeof *s->now);
+    s->saved = take(s->bytes);
+    s->before = take_zeros(numbers, sizeof *s->before);
+    s->now = take_zeros(numbers, sizeof *s->now);
     if (s->saved != NULL && s->before != NULL && s->now != NULL) {
         scene_moved(s);
         return true;
     }
-    free(s->saved);
-    free(s->before);
-    free(s->now);
+    give_back(s->saved);
+    give_back(s->before);
+    give_back(s->now);
     s->saved = NULL;
     s->before = s->now = NULL;
     return false;
