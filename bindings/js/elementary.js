@@ -59,15 +59,14 @@ function taylor(z, first, step, last) {
     return even + odd * z;
 }
 
-/** The k of e^x = 2^k (1 + e), |x| <= 1500. */
-export const expPower = (x) => nearest(x * Math.LOG2E);
-
-/** The e of e^x = 2^k (1 + e). */
-export function expRest(x, k) {
+/** The k and e of e^x = 2^k (1 + e), |x| <= 1500. */
+export function exponential(x) {
+    const k = nearest(x * Math.LOG2E);
     const r = x - k * 0.6931471806019545 - k * -4.2009150726810846e-11; // ln 2 in two parts
-    return r + r * r * taylor(r, 2, 1, 13);
+    return [k, r + r * r * taylor(r, 2, 1, 13)];
 }
 
+/** The sine and the cosine. */
 export function sineCosine(angle) {
     const known = Math.abs(angle) < 2251799813685248 ? angle : angle - angle;
     const quarter = known * (2 / Math.PI) + toInteger;
@@ -81,5 +80,5 @@ export function sineCosine(angle) {
     const turn = words[low];
     const first = turn & 1 ? cosine : sine;
     const second = turn & 1 ? sine : cosine;
-    return { sine: turn & 2 ? -first : first, cosine: (turn + 1) & 2 ? -second : second };
+    return [turn & 2 ? -first : first, (turn + 1) & 2 ? -second : second];
 }

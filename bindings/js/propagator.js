@@ -3,8 +3,7 @@
 // with the same operations in the same order.
 import {
     epsilon,
-    expPower,
-    expRest,
+    exponential,
     leastNormal,
     nearest,
     powerOfTwo,
@@ -70,31 +69,26 @@ export class Propagator {
         let rate = b;
         let F, G, H;
         if (this.overdamped) {
-            const x = max(-750, -2 * size);
-            const k = expPower(x);
+            const [k, e] = exponential(max(-750, -2 * size));
             const power = powerOfTwo(k);
-            const part = power * expRest(x, k);
-            const left = power + part;
+            const part = power * e;
             const fast = b + split;
-            const slow = omega2 / fast;
-            const h = size < tiny ? abs(dt) : (1 - power - part) / (2 * split);
-            const more = slow * h;
-            rate = dt > 0 ? slow : fast;
-            F = dt > 0 ? 1 + more : left - more;
-            G = dt > 0 ? left - more : 1 + more;
-            H = dt > 0 ? h : -h;
+            rate = omega2 / fast;
+            H = size < tiny ? abs(dt) : (1 - power - part) / (2 * split);
+            F = 1 + rate * H;
+            G = power + part - rate * H;
+            if (dt < 0) [rate, F, G, H] = [fast, G, F, -H];
         } else {
-            const { sine, cosine } = sineCosine(angle);
+            const [sine, cosine] = sineCosine(angle);
             H = size < tiny ? dt : sine * (1 / split);
             F = cosine + b * H;
             G = cosine - b * H;
         }
         // The power of two in two halves, so that a large start times a tiny factor does not underflow early.
-        const x = max(-1500, min(1500, -rate * dt));
-        const k = expPower(x);
+        const [k, e] = exponential(max(-1500, min(1500, -rate * dt)));
         const most = nearest(k / 2);
         const power = powerOfTwo(most);
-        const other = power + power * expRest(x, k);
+        const other = power + power * e;
         this.half = powerOfTwo(k - most);
         this.F = other * F;
         this.G = other * G;
