@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // @ts-self-types="./css.d.ts"
 // A spring as an easing of CSS: linear() through points of the exact solution.
+import { max, min, sqrt } from "./elementary.js";
 import { checkFinite, settings } from "./options.js";
 import { restTime } from "./settling.js";
 
@@ -10,12 +11,9 @@ const tolerance = 0.0018; // of the way; the rest of 0.002 is for the digits of 
 export function linear(options = {}, velocity = 0) {
     checkFinite("velocity", velocity);
     const { p } = settings(options);
-    const seconds = restTime(p, -1, velocity, 1e-3, 3e-3 * Math.sqrt(p.omega2));
+    const seconds = restTime(p, -1, velocity, 1e-3, 3e-3 * sqrt(p.omega2));
     if (!(seconds > 0 && seconds < 1e6)) throw new RangeError("the spring does not settle");
-    const valueAt = (i) => {
-        p.prepare((i / cells) * seconds);
-        return 1 + p.half * (p.H * velocity - p.F);
-    };
+    const valueAt = (i) => 1 + p.after((i / cells) * seconds, -1, velocity)[0];
     const points = ["0"];
     // From each point on, the longest line that stays within the tolerance. The slopes of such lines are an interval.
     for (let from = 0, start = 0; from < cells;) {
@@ -24,8 +22,8 @@ export function linear(options = {}, velocity = 0) {
         let to = from;
         for (let i = from + 1; i <= cells; i++) {
             const [value, room] = i < cells ? [valueAt(i), tolerance] : [1, 0];
-            const low = Math.max(least, (value - room - start) / (i - from));
-            const high = Math.min(most, (value + room - start) / (i - from));
+            const low = max(least, (value - room - start) / (i - from));
+            const high = min(most, (value + room - start) / (i - from));
             if (low > high) break;
             [least, most, to] = [low, high, i];
         }

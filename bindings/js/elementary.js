@@ -2,6 +2,8 @@
 // The functions of src/simd/elementary_tmpl.h that the exact solution needs, with the same operations in the same order. Only
 // + - * / and Math.sqrt are used, which ECMAScript defines to the last bit. Math.exp and Math.sin differ between engines.
 
+export const { abs, ceil, log2, max, min, PI, sqrt } = Math;
+
 const bits = new Float64Array(1);
 const words = new Uint32Array(bits.buffer);
 bits[0] = 1;
@@ -68,8 +70,8 @@ export function exponential(x) {
 
 /** The sine and the cosine. */
 export function sineCosine(angle) {
-    const known = Math.abs(angle) < 2251799813685248 ? angle : angle - angle;
-    const quarter = known * (2 / Math.PI) + toInteger;
+    const known = abs(angle) < 2251799813685248 ? angle : angle - angle;
+    const quarter = known * (2 / PI) + toInteger;
     const q = quarter - toInteger;
     const r = known - q * 1.570796325802803 - q * 9.920935796805404e-10; // pi/2 in two parts
     const z = r * r;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Options of springs: checks, and the parameters that people know, as in src/spring/params.c.
-import { leastNormal } from "./elementary.js";
+import { abs, leastNormal, sqrt } from "./elementary.js";
 import { Propagator } from "./propagator.js";
 import { timeWithin } from "./settling.js";
 
@@ -18,20 +18,25 @@ const checkNotNegative = (name, value) =>
 const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 
+/** The decay rate of the slowest mode, in units of omega. */
+const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + sqrt(ratio - 1) * sqrt(ratio + 1)));
+
 const twoPi = 2 * Math.PI;
 
-// Ways to describe a spring: the option that each requires, and those that go with it.
+// Ways to describe a spring: the option that each requires, omega from it and from the damping ratio, and further options.
 const ways = {
-    stiffness: ["damping", "mass"],
-    response: ["dampingFraction"],
-    duration: ["bounce"],
-    hertz: ["dampingRatio"],
-    halfLife: ["dampingRatio"],
-    settling: ["dampingRatio", "tolerance"],
+    stiffness: [null, "damping", "mass"],
+    response: [(time) => twoPi / time, "dampingFraction"],
+    duration: [(time) => twoPi / time, "bounce"],
+    hertz: [(frequency) => twoPi * frequency, "dampingRatio"],
+    halfLife: [(time, ratio) => Math.LN2 / time / slowest(ratio), "dampingRatio"],
+    settling: [
+        // Settling times are inversely proportional to omega.
+        (time, ratio, tolerance) => timeWithin(new Propagator(1, 2 * ratio, 1), 1, 0, tolerance) / time,
+        "dampingRatio",
+        "tolerance",
+    ],
 };
-
-/** The decay rate of the slowest mode, in units of omega. */
-const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + Math.sqrt(ratio - 1) * Math.sqrt(ratio + 1)));
 
 export const checkFunction = (name, value) =>
     check(value === null || typeof value === "function", name, "a function or null", value, TypeError);
@@ -41,7 +46,7 @@ export const inspected = Symbol.for("nodejs.util.inspect.custom");
 
 /** The size of a motion that begins at a distance from the target with a velocity. */
 export const sizeOf = (p, distance, velocity) =>
-    Math.abs(p.omega2 && distance) + Math.abs(velocity) * p.reach;
+    abs(p.omega2 && distance) + abs(velocity) * p.reach;
 
 /**
  * Of options: the propagator p, the explicit tolerances, and the tolerances of distance and speed in a motion of a size.
@@ -58,27 +63,21 @@ export function settings(options, others = []) {
         rest.duration = 0.5;
     }
     if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
-    const [second] = ways[way];
+    const [omegaOf, second] = ways[way];
     for (const name of given)
         if (name !== way && !ways[way].includes(name))
             throw new TypeError(`the option ${name} does not go with ${way}`);
     let { stiffness, damping, mass = 1 } = rest;
-    if (way !== "stiffness") {
+    if (omegaOf) {
         const { [way]: first, [second]: given = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = rest;
         checkPositive(way, first);
+        check(tolerance > 0 && tolerance < 1, "tolerance", "a number > 0 and < 1", tolerance);
         let ratio = given;
         if (second === "bounce") {
             check(isNumber(given) && given > -1 && given <= 1, second, "a number > -1 and <= 1", given);
             ratio = given >= 0 ? 1 - given : 1 / (1 + given);
-        } else (way === "halfLife" || way === "settling" ? checkPositive : checkNotNegative)(second, given);
-        let omega = twoPi / first;
-        if (way === "hertz") omega = twoPi * first;
-        if (way === "halfLife") omega = Math.LN2 / first / slowest(ratio);
-        if (way === "settling") {
-            check(tolerance > 0 && tolerance < 1, "tolerance", "a number > 0 and < 1", tolerance);
-            // Settling times are inversely proportional to omega.
-            omega = timeWithin(new Propagator(1, 2 * ratio, 1), 1, 0, tolerance) / first;
-        }
+        } else (omegaOf.length > 1 ? checkPositive : checkNotNegative)(second, given);
+        const omega = omegaOf(first, ratio, tolerance);
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
         check(stiffness >= leastNormal, "stiffness", "no denormal number", stiffness);

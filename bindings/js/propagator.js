@@ -2,17 +2,22 @@
 // The exact solution of a spring over a time step about its target: src/spring/roots.c, exact_formula.h and follow_formula.h
 // with the same operations in the same order.
 import {
+    abs,
+    ceil,
     epsilon,
     exponential,
     leastNormal,
+    log2,
+    max,
+    min,
     nearest,
     powerOfTwo,
     productError,
     scaled,
     sineCosine,
+    sqrt,
 } from "./elementary.js";
 
-const { abs, max, min, sqrt } = Math;
 const tiny = epsilon / 8; // does not change 1
 const nextUlp = epsilon / 2 + (epsilon / 2) * epsilon; // u + 2 u^2 with u = 2^-53
 
@@ -26,8 +31,8 @@ function remainderOf(n, d, q) {
 
 /** n/d - q for numbers of any size, scaled by powers of two. Which ones does not matter, so log2 need not be exact. */
 function restOf(n, d, q) {
-    const byD = Math.ceil(Math.log2(d));
-    const byQ = q && Math.ceil(Math.log2(q));
+    const byD = ceil(log2(d));
+    const byQ = q && ceil(log2(q));
     const m = scaled(d, -byD);
     return scaled(remainderOf(scaled(n, -byD - byQ), m, scaled(q, -byQ)) / m, byQ);
 }
@@ -36,6 +41,8 @@ function restOf(n, d, q) {
 const moderate = (a) => a > powerOfTwo(-400) && a < powerOfTwo(400);
 
 export class Propagator {
+    dt = NaN;
+
     constructor(stiffness, damping, mass) {
         const w = stiffness / mass + 0;
         const g = damping / mass + 0;
@@ -47,16 +54,22 @@ export class Propagator {
         this.omega2 = w; // [1/s^2]
         this.b = b; // [1/s]
         // The distance between the roots, sqrt |w - b^2|, scaled by a power of two lest squares overflow or underflow.
-        const k = Math.ceil(Math.log2(max(b, sqrt(w), leastNormal)));
+        const k = ceil(log2(max(b, sqrt(w), leastNormal)));
         const scale = powerOfTwo(-k);
         const c = b * scale;
         const square = c * c;
         const D = w * scale * scale - square - productError(c, c, square) + rest * scale * scale;
         this.split = sqrt(abs(D)) * powerOfTwo(k);
         this.overdamped = D < 0;
-        this.dt = NaN;
         // [s] times a speed: the distance that a value may still move, or without stiffness, that it moves
         this.reach = 1 / (sqrt(w) || g || Infinity);
+    }
+
+    /** Distance and velocity after dt. */
+    after(dt, x, v) {
+        this.prepare(dt);
+        const { half, F, G, H, omega2 } = this;
+        return [half * (F * x + H * v), half * (G * v - omega2 * H * x)];
     }
 
     /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - omega2 H x) about the target. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Settling times: src/spring/settling.c with the same operations, so that the decision whether a value rests is the same on
 // every engine.
+import { abs, max, PI } from "./elementary.js";
 
 /** The first time in (before .. after] at which `holds`, which does not hold at `before`. */
 function firstTime(holds, before, after) {
@@ -21,16 +22,11 @@ function lastTime(holds, from, step) {
 }
 
 const creeps = (p) => p.overdamped || p.split === 0;
-const speedAt = (p, y0, v0, t) => {
-    p.prepare(t);
-    return p.half * (p.G * v0 - p.omega2 * p.H * y0);
-};
-
 /** When the velocity of a spring at a distance y0 from rest changes its sign, or becomes 0. */
 export function turningTime(p, y0, v0) {
     if (v0 === 0) return 0;
-    const turned = (t) => !(speedAt(p, y0, v0, t) * v0 > 0);
-    return creeps(p) ? lastTime(turned, 0, 1 / p.b) : firstTime(turned, 0, Math.PI / p.split);
+    const turned = (t) => !(p.after(t, y0, v0)[1] * v0 > 0);
+    return creeps(p) ? lastTime(turned, 0, 1 / p.b) : firstTime(turned, 0, PI / p.split);
 }
 
 /** The time after which a spring that starts at a distance y0 from rest with the velocity v0 stays within `tolerance`. */
@@ -38,16 +34,16 @@ export function timeWithin(p, y0, v0, tolerance) {
     const free = p.omega2 === 0;
     if (tolerance === 0 || (free && p.b === 0)) return v0 || (y0 && !free) ? Infinity : 0;
     const within = (t) => {
-        const speed = speedAt(p, y0, v0, t);
-        return !(Math.abs(free ? speed * p.reach : p.half * (p.F * y0 + p.H * v0)) > tolerance);
+        const [y, v] = p.after(t, y0, v0);
+        return !(abs(free ? v * p.reach : y) > tolerance);
     };
     // Between turning points, which have equal distances in time, the spring comes closer or goes away.
     const first = turningTime(p, y0, v0);
     if (within(first)) return within(0) ? 0 : firstTime(within, 0, first);
     if (creeps(p)) return lastTime(within, first, 1 / p.b);
-    return p.b === 0 ? Infinity : lastTime(within, first, Math.PI / p.split);
+    return p.b === 0 ? Infinity : lastTime(within, first, PI / p.split);
 }
 
 /** The time after which distance and velocity both stay within their tolerances. */
 export const restTime = (p, y, v, restDelta, restSpeed) =>
-    Math.max(timeWithin(p, y, v, restDelta), timeWithin(p, v, -p.omega2 * y - 2 * p.b * v, restSpeed));
+    max(timeWithin(p, y, v, restDelta), timeWithin(p, v, -p.omega2 * y - 2 * p.b * v, restSpeed));

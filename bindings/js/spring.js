@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // One value that follows a target: spring_follow() without a load.
-import { epsilon } from "./elementary.js";
+import { abs, epsilon, min, PI } from "./elementary.js";
 import { checkFinite, checkFunction, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
 import { restTime, turningTime } from "./settling.js";
 import { changed } from "./watch.js";
-
-const { abs } = Math;
 
 export class Spring {
     #settings;
@@ -17,7 +15,6 @@ export class Spring {
     #settled = true;
     #resting = false; // during onRest()
     #size = 0; // of the motion since the target or the velocity was set
-    #tolerances; // of distance and speed in this motion
     #finished = null; // the promise
     #finish;
     clamp;
@@ -36,9 +33,11 @@ export class Spring {
 
     #moves() {
         this.#settled = false;
-        const { p, tolerances } = this.#settings;
-        this.#size = sizeOf(p, this.#target - this.#value, this.#velocity - this.#targetVelocity);
-        this.#tolerances = tolerances(this.#size);
+        this.#size = sizeOf(
+            this.#settings.p,
+            this.#target - this.#value,
+            this.#velocity - this.#targetVelocity,
+        );
         changed(this);
     }
 
@@ -97,7 +96,6 @@ export class Spring {
     set(options) {
         const { restDelta, restSpeed } = this.#settings;
         this.#settings = settings({ restDelta, restSpeed, ...options });
-        this.#tolerances = this.#settings.tolerances(this.#size);
         if (!this.#settled) changed(this);
         else if (this.#value !== this.#target) this.#moves(); // it had no stiffness
     }
@@ -125,13 +123,13 @@ export class Spring {
     settlingTime() {
         if (this.#settled) return 0;
         if (this.#targetVelocity !== 0) return Infinity;
-        const { p } = this.#settings;
+        const { p, tolerances } = this.#settings;
         const y = this.#value - this.#target;
         const v = this.#velocity;
-        const time = restTime(p, y, v, ...this.#tolerances);
+        const time = restTime(p, y, v, ...tolerances(this.#size));
         if (!this.clamp || p.omega2 === 0) return time;
         // It stops where it reaches the target. The distance is a velocity, of its integral.
-        return Math.min(time, turningTime(p, -(v + 2 * p.b * y) / p.omega2, y));
+        return min(time, turningTime(p, -(v + 2 * p.b * y) / p.omega2, y));
     }
 
     step(dt) {
@@ -140,15 +138,13 @@ export class Spring {
         const target = this.#target;
         const speed = this.#targetVelocity;
         if (this.#value === target && this.#velocity === 0 && speed === 0) return this.#place(target);
-        const { p } = this.#settings;
-        p.prepare(dt);
+        const { p, tolerances } = this.#settings;
         const attracts = p.omega2 > 0; // without stiffness, only the velocity of a target has an effect
         const moved = speed && speed * dt;
         const to = attracts ? target : moved;
         const y0 = this.#value - (attracts ? target - moved : 0);
         const u0 = this.#velocity - speed;
-        const y = p.half * (p.F * y0 + p.H * u0);
-        const u = p.half * (p.G * u0 - p.omega2 * p.H * y0);
+        const [y, u] = p.after(dt, y0, u0);
         const x = to + y;
         const v = speed ? speed + u : u;
         if (!isNumber(0 * x + 0 * v)) throw new RangeError("value or velocity overflows");
@@ -156,9 +152,9 @@ export class Spring {
         if (this.clamp && dt > 0 && attracts) {
             // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
             const on = speed && 4 * epsilon * (abs(target) + abs(moved));
-            stops ||= abs(y0) <= abs(on) || (y0 > 0 ? y <= 0 : y >= 0) || p.angle >= Math.PI;
+            stops ||= abs(y0) <= abs(on) || (y0 > 0 ? y <= 0 : y >= 0) || p.angle >= PI;
         }
-        const [restDelta, restSpeed] = this.#tolerances;
+        const [restDelta, restSpeed] = tolerances(this.#size);
         const left = attracts && x - target;
         if (abs(left) <= restDelta && abs(u) <= restSpeed)
             stops ||= restTime(p, left, u, restDelta, restSpeed) === 0;

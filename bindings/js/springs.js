@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Many values, each with its own target: spring_batch_follow_moving() without a load.
 import { check, checkFinite, checkFunction, inspected, isNumber, settings, sizeOf } from "./options.js";
-import { epsilon, leastNormal } from "./elementary.js";
+import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
 import { changed } from "./watch.js";
-
-const { abs } = Math;
 
 /** Settings of each value; if no option is an array, of all values. */
 function settingsOf(options, count, others) {
@@ -192,7 +190,7 @@ export class Springs {
         const attracts = omega2 > 0; // without stiffness, only the velocity of a target has an effect
         const clamp = this.clamp && dt > 0 && attracts;
         const steered = this.#steered;
-        const turns = angle >= Math.PI;
+        const turns = angle >= PI;
         const tells = this.onRest !== null;
         // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels.
         const slope = (4 * epsilon) / (fraction || 1);
