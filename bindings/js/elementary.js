@@ -4,25 +4,19 @@
 
 export const { abs, ceil, log2, max, min, PI, sqrt } = Math;
 
-const bits = new Float64Array(1);
-const words = new Uint32Array(bits.buffer);
-bits[0] = 1;
-const high = words[1] ? 1 : 0; // the word with the exponent: the order depends on the processor
-const low = 1 - high;
-
-const toInteger = 6755399441055744; // 1.5 * 2^52: adding it leaves the nearest integer in the lowest bits
+export const epsilon = Number.EPSILON; // 2^-52
+const toInteger = 1.5 / epsilon; // 1.5 * 2^52: adding it leaves the nearest integer in the lowest bits
 
 export const nearest = (a) => a + toInteger - toInteger;
 
-/** 2^k of an integer, |k| < 1087. */
+/** 2^k of an integer, |k| < 1087. Each product is exact. */
 export function powerOfTwo(k) {
-    const shift = k > 1022 ? 64 : k < -1022 ? -64 : 0;
-    words[low] = 0;
-    words[high] = (k - shift + 1023) << 20;
-    return shift ? bits[0] * powerOfTwo(shift) : bits[0];
+    let power = 1;
+    let factor = k < 0 ? 0.5 : 2;
+    for (k = abs(k); k > 0; k >>= 1, factor *= factor) if (k & 1) power *= factor;
+    return power;
 }
 
-export const epsilon = Number.EPSILON; // 2^-52
 export const leastNormal = powerOfTwo(-1022);
 
 /** a 2^k, exact where the result is normal, else rounded once: ldexp() in C, for a of 1e-300 or more where k < 0. */
@@ -70,17 +64,15 @@ export function exponential(x) {
 
 /** The sine and the cosine. */
 export function sineCosine(angle) {
-    const known = abs(angle) < 2251799813685248 ? angle : angle - angle;
-    const quarter = known * (2 / PI) + toInteger;
-    const q = quarter - toInteger;
+    const known = abs(angle) < 0.5 / epsilon ? angle : angle - angle;
+    const q = nearest(known * (2 / PI));
     const r = known - q * 1.570796325802803 - q * 9.920935796805404e-10; // pi/2 in two parts
     const z = r * r;
     const sine = r - r * z * taylor(-z, 3, 2, 17); // C has the signs in the coefficients
     const near = 1 - z / 2;
     const cosine = near + (1 - near - z / 2 + z * z * taylor(-z, 4, 2, 18));
-    bits[0] = quarter;
-    const turn = words[low];
-    const first = turn & 1 ? cosine : sine;
-    const second = turn & 1 ? sine : cosine;
-    return [turn & 2 ? -first : first, (turn + 1) & 2 ? -second : second];
+    // & uses an integer of any size modulo 2^32.
+    const first = q & 1 ? cosine : sine;
+    const second = q & 1 ? sine : cosine;
+    return [q & 2 ? -first : first, (q + 1) & 2 ? -second : second];
 }

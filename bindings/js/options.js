@@ -7,11 +7,11 @@ import { timeWithin } from "./settling.js";
 /** Throws unless `holds`: `stiffness must be a finite number >= 0, got NaN`. */
 export function check(holds, name, what, value, Kind = typeof value === "number" ? RangeError : TypeError) {
     if (holds) return;
-    const shown = typeof value === "string" ? JSON.stringify(value) : String(value);
+    const shown = typeof value === "string" ? `"${value}"` : String(value);
     throw new Kind(`${name} must be ${what}, got ${shown}`);
 }
 
-export const isNumber = (value) => typeof value === "number" && value - value === 0;
+export const isNumber = Number.isFinite;
 export const checkFinite = (name, value) => check(isNumber(value), name, "a finite number", value);
 const checkNotNegative = (name, value) =>
     check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
@@ -45,22 +45,20 @@ export const checkFunction = (name, value) =>
 export const inspected = Symbol.for("nodejs.util.inspect.custom");
 
 /** The size of a motion that begins at a distance from the target with a velocity. */
-export const sizeOf = (p, distance, velocity) =>
-    abs(p.omega2 && distance) + abs(velocity) * p.reach;
+export const sizeOf = (p, distance, velocity) => abs(p.omega2 && distance) + abs(velocity) * p.reach;
 
 /**
  * Of options: the propagator p, the explicit tolerances, and the tolerances of distance and speed in a motion of a size.
  * `others` are the names of further options.
  */
-export function settings(options, others = []) {
+export function settings(options, others) {
     const { restDelta, restSpeed, ...rest } = options;
     checkNotNegative("restDelta", restDelta ?? 0);
     checkNotNegative("restSpeed", restSpeed ?? 0);
-    const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others.includes(name));
-    let way = given.find((name) => Object.hasOwn(ways, name));
+    const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others?.includes(name));
+    let way = given.find((name) => Object.keys(ways).includes(name));
     if (!way && typeof options === "object" && given.every((name) => name === "bounce")) {
         way = "duration";
-        rest.duration = 0.5;
     }
     if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
     const [omegaOf, second] = ways[way];
@@ -69,7 +67,7 @@ export function settings(options, others = []) {
             throw new TypeError(`the option ${name} does not go with ${way}`);
     let { stiffness, damping, mass = 1 } = rest;
     if (omegaOf) {
-        const { [way]: first, [second]: given = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = rest;
+        const { [way]: first = 0.5, [second]: given = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = rest;
         checkPositive(way, first);
         check(tolerance > 0 && tolerance < 1, "tolerance", "a number > 0 and < 1", tolerance);
         let ratio = given;

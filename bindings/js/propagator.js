@@ -41,14 +41,14 @@ function restOf(n, d, q) {
 const moderate = (a) => a > powerOfTwo(-400) && a < powerOfTwo(400);
 
 export class Propagator {
-    dt = NaN;
+    dt;
 
     constructor(stiffness, damping, mass) {
         const w = stiffness / mass + 0;
         const g = damping / mass + 0;
         const b = g / 2;
         const rest =
-            moderate(mass) && moderate(w) && (moderate(g) || g === 0)
+            moderate(mass) && moderate(w) && (!g || moderate(g))
                 ? (remainderOf(stiffness, mass, w) - b * remainderOf(damping, mass, g)) * (1 / mass)
                 : restOf(stiffness, mass, w) - b * restOf(damping, mass, g);
         this.omega2 = w; // [1/s^2]
@@ -114,12 +114,11 @@ export class Propagator {
 
 /** Whether rounding would keep the spring from coming closer to its target: the rule of follow_formula.h. */
 export function lands(x, target, y, u, fraction, omega2) {
-    const distance = abs(y);
     const half = max(abs(x), abs(target)) / 2;
     const room = (half + half * nextUlp - half) * 2.25 + leastNormal; // 2.25 half ulps
-    if (!(fraction > 0 && distance * fraction <= room)) return false;
+    const distance = abs(y);
     const speed = abs(u) / sqrt(omega2);
     const large = max(distance, speed);
     const ratio = min(distance, speed) / (large || 1);
-    return large * sqrt(1 + ratio * ratio) * fraction <= room;
+    return fraction > 0 && large * sqrt(1 + ratio * ratio) * fraction <= room;
 }

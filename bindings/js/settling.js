@@ -5,12 +5,11 @@ import { abs, max, PI } from "./elementary.js";
 
 /** The first time in (before .. after] at which `holds`, which does not hold at `before`. */
 function firstTime(holds, before, after) {
-    for (;;) {
-        const middle = before + (after - before) / 2;
-        if (!(middle > before && middle < after)) return after;
+    let middle;
+    while ((middle = before + (after - before) / 2) > before && middle < after)
         if (holds(middle)) after = middle;
         else before = middle;
-    }
+    return after;
 }
 
 /** The first time after `from` at which `holds`, which it does from then on, as at infinity. Tests multiples of `step` first. */
@@ -21,12 +20,14 @@ function lastTime(holds, from, step) {
     return firstTime(holds, from + before * step, from + after * step);
 }
 
-const creeps = (p) => p.overdamped || p.split === 0;
+/** The time between turning points, or without oscillation, of decay. */
+const stride = (p) => (p.overdamped || p.split === 0 ? 1 / p.b : PI / p.split);
+
 /** When the velocity of a spring at a distance y0 from rest changes its sign, or becomes 0. */
 export function turningTime(p, y0, v0) {
     if (v0 === 0) return 0;
     const turned = (t) => !(p.after(t, y0, v0)[1] * v0 > 0);
-    return creeps(p) ? lastTime(turned, 0, 1 / p.b) : firstTime(turned, 0, PI / p.split);
+    return lastTime(turned, 0, stride(p));
 }
 
 /** The time after which a spring that starts at a distance y0 from rest with the velocity v0 stays within `tolerance`. */
@@ -40,8 +41,7 @@ export function timeWithin(p, y0, v0, tolerance) {
     // Between turning points, which have equal distances in time, the spring comes closer or goes away.
     const first = turningTime(p, y0, v0);
     if (within(first)) return within(0) ? 0 : firstTime(within, 0, first);
-    if (creeps(p)) return lastTime(within, first, 1 / p.b);
-    return p.b === 0 ? Infinity : lastTime(within, first, PI / p.split);
+    return p.b === 0 ? Infinity : lastTime(within, first, stride(p));
 }
 
 /** The time after which distance and velocity both stay within their tolerances. */

@@ -152,7 +152,7 @@ export class Spring {
         if (this.clamp && dt > 0 && attracts) {
             // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
             const on = speed && 4 * epsilon * (abs(target) + abs(moved));
-            stops ||= abs(y0) <= abs(on) || (y0 > 0 ? y <= 0 : y >= 0) || p.angle >= PI;
+            stops ||= abs(y0) <= on || (y0 > 0 ? y <= 0 : y >= 0) || p.angle >= PI;
         }
         const [restDelta, restSpeed] = tolerances(this.#size);
         const left = attracts && x - target;
