@@ -3,14 +3,20 @@
 #ifndef SPRINGSTEP_COMPILER_H
 #define SPRINGSTEP_COMPILER_H
 
+#ifndef SPRING_INLINE /* a build for size may leave the choice to the compiler */
 #if defined(__GNUC__)
-#define SPRING_INLINE              static inline __attribute__((always_inline)) /* folds constant flags at -O1 too */
+#define SPRING_INLINE static inline __attribute__((always_inline)) /* folds constant flags at -O1 too */
+#else
+#define SPRING_INLINE static inline
+#endif
+#endif
+
+#if defined(__GNUC__)
 #define SPRING_NOINLINE            static __attribute__((noinline, unused))     /* one copy for all callers of a file */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #define SPRING_PREFETCH(address)   __builtin_prefetch(address)
 #define SPRING_LOWEST_BIT(bits)    (unsigned)__builtin_ctz(bits) /* of an unsigned number other than 0 */
 #else
-#define SPRING_INLINE              static inline
 #define SPRING_NOINLINE            static
 #define SPRING_UNLIKELY(condition) (condition)
 #define SPRING_PREFETCH(address)   (void)(address)
