@@ -57,6 +57,28 @@ sweep_memory *sweep_memory_new(void);
 void sweep_memory_free(sweep_memory *memory);
 """
 
+# What Scene.run() calls: `steps` steps, and frames after every `every` of them and after the last one. Returns a status and the
+# number of frames that are recorded.
+RECORD = """
+static spring_status springstep_record{f}(spring_scene{f} *s, spring_method m, double dt, uint64_t every, uint64_t steps,
+                                          size_t frames, size_t *recorded, size_t particles, size_t numbers,
+                                          double *times, {number} *position, {number} *velocity)
+{{
+    for (*recorded = 0; *recorded < frames; ++*recorded) {{
+        const uint64_t n = every < steps ? every : steps;
+        const spring_status status = n > 0 ? spring_scene{f}_advance(s, m, dt, n) : SPRING_OK;
+        if (status != SPRING_OK)
+            return status;
+        steps -= n;
+        times[*recorded] = spring_scene{f}_time(s);
+        spring_scene{f}_get{f}(s, SPRING_POSITION, position + *recorded * numbers, 0, 0, particles);
+        if (velocity != NULL)
+            spring_scene{f}_get{f}(s, SPRING_VELOCITY, velocity + *recorded * numbers, 0, 0, particles);
+    }}
+    return SPRING_OK;
+}}
+"""
+RECORDS = "".join(RECORD.format(f=f, number=number) for f, number in (("", "double"), ("f", "float")))
 
 # The objects of cffi in _native.pyi.
 TYPES = '''# SPDX-License-Identifier: MIT
@@ -145,12 +167,13 @@ def parsed(include, compiler):
     from cffi import FFI
     ffi = FFI()
     ffi.cdef(declarations(include, compiler) + "".join(f"\n#define {name} ..." for name, _ in numbers(include)) + CALLBACKS + SWEEP)
+    ffi.cdef(re.sub(r"\{.*?^\}", ";", RECORDS, flags=re.S | re.M))
     return ffi
 
 
 def python(include, _, compiler, output):
     ffi = parsed(include, compiler)
-    ffi.set_source("springstep._native", included(include) + '#include "sweep/grid.h"\n')
+    ffi.set_source("springstep._native", included(include) + '#include "sweep/grid.h"\n' + RECORDS)
     ffi.emit_c_code(str(output))
 
 

@@ -22,6 +22,7 @@ F = TypeVar("F", bound=np.floating[Any])
 
 _PREFIXES = {np.dtype(np.float64): "spring_scene", np.dtype(np.float32): "spring_scenef"}
 _VALUES = ("rest", "stiffness", "damping")  # of a link
+_UNINTERRUPTED = 2**20  # numbers that run() advances by a step before it can be interrupted: some milliseconds
 _POSITIONS_ONLY = {method.name for method in methods() if method.positions_only}
 
 
@@ -317,7 +318,10 @@ class Scene(Generic[F]):
 
     def _run(self, name: str, *arguments: Any) -> int:
         """Call a C function that may call the force, and raise the exception of the force."""
-        result: int = self._c(name)(self._pointer, *arguments)
+        return self._call(self._c(name), *arguments)
+
+    def _call(self, function: Any, *arguments: Any) -> int:
+        result: int = function(self._pointer, *arguments)
         if self._called is not None and self._called.error is not None:
             error, self._called.error = self._called.error, None
             raise error
@@ -469,27 +473,24 @@ class Scene(Generic[F]):
         times = np.empty(frames)
         shape = (frames, self._particles, self._axes)
         arrays = [np.empty(shape, self._dtype) for _ in range(1 + velocities)]
-        pointer, size = "double *" if self._dtype == np.float64 else "float *", shape[1] * shape[2]
-        starts = [ffi.cast(pointer, ffi.from_buffer(array)) for array in arrays]
-        get, time = self._c("get" if self._dtype == np.float64 else "getf"), self._c("time")
+        double = self._dtype == np.float64
+        record, number = (lib.springstep_record, "double") if double else (lib.springstep_recordf, "float")
+        size, recorded = shape[1] * shape[2], ffi.new("size_t *")
+        to_times, *to = (ffi.from_buffer(f"{kind}[]", array) for kind, array in zip(("double", number, number), (times, *arrays)))
+        most = 1 if progress is not None else max(1, _UNINTERRUPTED // max(1, every * size))
         start = self.snapshot() if self._undo else None
-
-        def record(frame: int, taken: int) -> int:
-            status = self._advance(method, dt, taken) if taken else 0
-            if not status:
-                times[frame] = time(self._pointer)
-                for quantity, first in zip((lib.SPRING_POSITION, lib.SPRING_VELOCITY), starts):
-                    get(self._pointer, quantity, first + frame * size, 0, 0, shape[1])
-            return status
-
         done = frame = 0
         try:
-            self._guard.long(record, 0, 0)
-            for frame in range(1, frames):
-                taken = min(every, steps - done)
-                self._check_step(self._guard.long(record, frame, taken), dt, method)
+            while frame < frames:
+                count = min(most, frames - frame) if frame > 0 else 1
+                taken = min(count * every, steps - done) if frame > 0 else 0
+                pointers = [pointer + frame * size for pointer in to] + [ffi.NULL]
+                status = self._guard.long(self._call, record, method_number(method), dt, every, taken, count, recorded,
+                                          shape[1], size, to_times + frame, *pointers[:2])
+                frame += recorded[0]
+                self._check_step(status, dt, method)
                 done += taken
-                if progress is not None:
+                if progress is not None and taken > 0:
                     progress(done, steps)
         except BaseException as error:
             if start is not None:

@@ -314,6 +314,24 @@ def test_a_run_records_what_calls_of_advance_do(steps, every, dtype):
     assert len(times) == len(positions) == len(velocities) == len(ends) and positions.dtype == velocities.dtype == dtype
     assert fnv(scene) == fnv(other) and told == [(end, steps, time) for end, time in zip(ends[1:], times[1:])]
     assert len(scene.run(1e-3, steps, every)) == 2
+    for one, other in zip(cloth(n=5, dtype=dtype).run(1e-3, steps, every, velocities=True), (times, positions, velocities)):
+        assert (one == other).all()
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "rkn8"])
+def test_a_force_that_raises_ends_a_run(method):
+    def late(t, position, velocity, force):
+        if t > 0.015:
+            raise ZeroDivisionError
+
+    scene = Scene.from_grid(grid([6], 0.3, 170.0, pinned=["first_x"]), gravity=[0, -9.81, 0.4], force=late,
+                            force_ignores_velocity=True, methods=["leapfrog", "rkn8"])
+    before = fnv(scene)
+    with pytest.raises(ZeroDivisionError):
+        scene.run(1e-3, 100, method=method)
+    assert fnv(scene) == before and scene.time == 0
+    scene.run(1e-3, 10, method=method)
+    assert fnv(scene) != before
 
 
 def test_a_run_that_fails_changes_nothing_and_has_its_frames():
