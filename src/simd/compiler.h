@@ -12,7 +12,7 @@
 #endif
 
 #if defined(__GNUC__)
-#define SPRING_NOINLINE            static __attribute__((noinline, unused))     /* one copy for all callers of a file */
+#define SPRING_NOINLINE            static __attribute__((noinline, unused)) /* one copy for all callers of a file */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #define SPRING_PREFETCH(address)   __builtin_prefetch(address)
 #define SPRING_LOWEST_BIT(bits)    (unsigned)__builtin_ctz(bits) /* of an unsigned number other than 0 */
