@@ -30,6 +30,7 @@ const {
     methods: offered,
 } = await import("../scenes.js");
 const { ready, Scene, soften, TENSION_ONLY, TETHER, tethers } = await import("../scenes.js");
+const { library } = await import("../module.js");
 const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
 
 function offers(definition, method) {
@@ -966,6 +967,35 @@ await test("an explosion throws with a code, and the state is the one before", (
     });
     assert.equal(hashOf(scene), hash);
     scene.free();
+});
+
+await test("memory is aligned, taken once at a time, and used again", () => {
+    const { malloc, free, memory } = library();
+    const blocks = [];
+    const release = () => {
+        const [{ at, bytes, mark }] = blocks.splice(Math.floor(uniform(0, blocks.length)), 1);
+        assert.ok(new Uint8Array(memory.buffer, at, bytes).every((byte) => byte === mark));
+        free(at);
+    };
+    let largest = 0;
+    for (let round = 0; round < 4; round++) {
+        for (let i = 0; i < 2000; i++) {
+            if (blocks.length > 0 && chance(0.5)) release();
+            const bytes = Math.floor(logarithmic(1, 1e5));
+            const at = malloc(bytes);
+            assert.ok(at > 0 && at % 8 === 0);
+            blocks.push({ at, bytes, mark: i % 256 });
+            new Uint8Array(memory.buffer, at, bytes).fill(i % 256);
+        }
+        while (blocks.length > 0) release();
+        if (round === 0) largest = memory.buffer.byteLength;
+        const all = malloc(largest / 2); // freed blocks are joined
+        assert.ok(all > 0);
+        free(all);
+    }
+    assert.ok(memory.buffer.byteLength < 2 * largest, `${memory.buffer.byteLength} bytes after ${largest}`);
+    assert.equal(malloc(2 ** 32 - 1), 0);
+    free(0);
 });
 
 await test("1000 scenes share an instance; memory is released by free, using and the garbage collector", async () => {
