@@ -892,7 +892,8 @@ static bool check_definition(const definition *d, size_t *bytes)
     uint64_t tiny[SPRING_SCENE_ALIGN / sizeof(uint64_t)];
     const spring_status status = spring_scene_check(&d->def, &field, &index);
     must((field == NULL) == (status == SPRING_OK), "the error is named");
-    must(index == 0 || index < d->def.particles || index < d->def.links || index < 3, "and where it is");
+    must(index == 0 || index < d->def.particles || index < d->def.links || index < d->def.weighted_links || index < 3,
+         "and where it is");
     must(spring_scene_bytes(&d->def, bytes) == status, "bytes() agrees with check()");
     if (status == SPRING_OK) {
         must(*bytes > 0 && *bytes % SPRING_SCENE_ALIGN == 0, "a multiple of the alignment");
