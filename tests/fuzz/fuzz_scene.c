@@ -557,7 +557,7 @@ static spring_collider any_collider(void)
     c.friction = choose(2) == 0 ? 0 : size();
     const uint32_t last = take();
     c.restitution = last % 9 / 8.0;
-    if (last >= 128)
+    if (last >= 96)
         further_motion(&c);
     return c;
 }
@@ -871,6 +871,8 @@ static void live(life *l)
     } choices[19] = {{NULL, 0},   {set_all, 0}, {get, 0},  {NULL, 1},    {NULL, 2},    {ask, 0},     {copy_over, 0},
                      {remake, 0}, {NULL, 3},    {NULL, 4}, {advance, 0}, {advance, 0}, {advance, 0}, {advance, 0},
                      {NULL, 5},   {tear, 0},    {NULL, 6}, {NULL, 7},    {travel, 0}};
+    if (l->d->def.colliders > 0)
+        make(l, &changes[7]); /* set_colliders() */
     for (int call = 0; call < most_calls && next < end; call++) {
         const uint32_t what = take(), old = 200, choice = what < old ? what % 14 : 14 + what % 5;
         if (choices[choice].other != NULL)
