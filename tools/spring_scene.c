@@ -118,11 +118,12 @@ static const cli_option options[] = {
              "z [m] is a point of the plane, the centre, or one end of the capsule. vx vy vz [m/s] is the\n"
              "velocity, ax ay az [m/s^2] the acceleration, wx wy wz [rad/s] the spin, which turns a plane or a box\n"
              "about its point, wax way waz [rad/s^2] the spin acceleration, and sx sy sz [m/s] the velocity of a\n"
-             "belt on its surface. friction is at least 0, restitution from 0 to 1. mask is an integer; 0 means all\n"
-             "bits. A plane also has the normal nx ny nz, upwards by default. A sphere has a radius. A capsule has\n"
-             "a radius and the other end x2 y2 z2. A box has hx hy hz, half of its size along x, y and z, and a\n"
-             "radius, which rounds its edges. z is up. The rope has no y. At most 32 colliders. Not for scenes with\n"
-             "one axis, and not for euler, rkn8 and srkn6."},
+             "belt on its surface. friction is at least 0, restitution from 0 to 1. mask is an integer: a particle\n"
+             "collides if bit (index modulo 32) is set; 0 means all bits. A plane also has the normal nx ny nz,\n"
+             "upwards by default. A sphere has a radius. A capsule has a radius and the other end x2 y2 z2. A box\n"
+             "has hx hy hz, half of its size along x, y and z, and a radius, which rounds its edges. z is up. The\n"
+             "rope has no y. At most 32 colliders. Not for scenes with one axis, and not for euler, rkn8 and\n"
+             "srkn6."},
     {"particle-radius", CLI_NOT_NEGATIVE, .real = &particle_radius, .value = "R", .needs = &colliders,
      .help = "radius of every particle [m]"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows and frames per second"},
@@ -207,6 +208,20 @@ static void refuse_methods_without_contacts(void)
     if (colliders.count > 0 && (m == SPRING_EULER || spring_method_describe(m)->positions_only))
         cli_fail(CLI_USAGE, "--collider: the method \"%s\" does not support contacts; choose another --method",
                  spring_method_name(m));
+}
+
+/* Particle i has bit i mod 32. Returns NULL if no collider has a mask. */
+static uint32_t *make_masks(size_t particles, const spring_collider *c)
+{
+    bool any = false;
+    for (size_t i = 0; i < colliders.count; i++)
+        any = any || c[i].mask != 0;
+    uint32_t *mask = any ? malloc(particles * sizeof *mask) : NULL;
+    if (any && mask == NULL)
+        cli_fail(CLI_FAILED, "no memory for %zu particles", particles);
+    for (size_t i = 0; any && i < particles; i++)
+        mask[i] = UINT32_C(1) << i % 32;
+    return mask;
 }
 
 static void set_colliders(spring_scene *scene, const spring_collider *c)
@@ -649,7 +664,8 @@ int main(int argc, char **argv)
     start_preset(&r, &settings);
     start_links(&r, bend, tethers);
     r.def.flags |= (tension_only ? SPRING_SCENE_TENSION_ONLY : 0) | (tear > 0 ? SPRING_SCENE_EDITABLE : 0);
-    r.def.colliders = (uint32_t)colliders.count, r.def.particle_radius = particle_radius;
+    uint32_t *mask = make_masks(r.def.particles, collider);
+    r.def.colliders = (uint32_t)colliders.count, r.def.particle_radius = particle_radius, r.def.mask = mask;
     disturbances *p = chosen_disturbances(&r, &settings);
     size_t bytes;
     spring_scene *scene = start_scene(&r, (spring_method)method, &bytes);
@@ -674,6 +690,7 @@ int main(int argc, char **argv)
     free(loaded.bytes);
     free(v.xyz);
     free(v.saved);
+    free(mask);
     free(scene);
     disturbances_free(p);
     preset_clear(&r);

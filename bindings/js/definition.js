@@ -7,7 +7,8 @@ const flags = { editable: 1, noUndo: 2, tensionOnly: 8, heldForces: 16 };
 const forceIgnoresVelocity = 4;
 const names = [
     ..."axes position velocity mass pinned links weightedLinks gravity drag maxSpeed methods".split(" "),
-    ..."force forceUsesVelocity component base colliders particleRadius count".split(" "),
+    ..."force forceUsesVelocity component base colliders count".split(" "),
+    ..."particleRadius particleFriction particleMask".split(" "),
     ...Object.keys(flags),
 ];
 
@@ -186,6 +187,7 @@ const wanted = {
     drag: "a finite number >= 0, also when it is divided by a mass",
     maxSpeed: "a finite number >= 0",
     particleRadius: "a finite number >= 0",
+    particleFriction: "a finite number >= 0",
     position: "a finite number",
     velocity: "a finite number",
     mass: "a finite number > 0 with a finite reciprocal",
@@ -227,7 +229,7 @@ export function lendColliders(take, colliders) {
     colliders.forEach((collider, i) => {
         const name = `colliders[${i}]`;
         check(typeof collider === "object" && collider !== null, name, "an object", collider, TypeError);
-        checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
+        checkKnown(collider, ["shape", "normal", "mask", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
         for (const field of special)
@@ -260,13 +262,19 @@ export function lendColliders(take, colliders) {
             const what = most === 1 ? "a number from 0 to 1" : "a finite number >= 0";
             check(value >= 0 && value <= most, `${name}.${field}`, what, value);
         }
+        const { mask = 0 } = collider;
+        checkUpTo(`${name}.mask`, mask, 0xffffffff);
         const at = pointer + colliderBytes * i;
         memory.uint32(at, colliderBytes / 4).fill(0);
         memory.uint32(at, 1)[0] = shape;
         memory.float64(at + 8, colliderNumbers).set(numbers);
+        memory.uint32(at + 8 + 8 * colliderNumbers, 1)[0] = mask;
     });
     return pointer;
 }
+
+const nameOf = { mass_all: "mass", max_speed: "maxSpeed", particle_radius: "particleRadius" };
+Object.assign(nameOf, { radius: "particleRadius", friction: "particleFriction" });
 
 /** Throws what def_check() has found in a definition. */
 function refuse(definition, axes) {
@@ -293,8 +301,7 @@ function refuse(definition, axes) {
         const value = linkValue(definition.links, i, part);
         check(false, `links[${i}].${part}`, wanted[part], value);
     }
-    const name =
-        { mass_all: "mass", max_speed: "maxSpeed", particle_radius: "particleRadius" }[field] ?? field;
+    const name = nameOf[field] ?? field;
     let value = definition[name];
     let place = name;
     if (name === "position" || name === "velocity") {
@@ -311,7 +318,7 @@ export function define(take, definition) {
     const { axes = 3, position, velocity, mass = 1, pinned, links = [], weightedLinks } = definition;
     const { gravity = [0, 0, 0], drag = 0, maxSpeed = 0, methods = [] } = definition;
     const { force = null, forceUsesVelocity = false, component = 0, base } = definition;
-    const { colliders = 0, particleRadius = 0, count } = definition;
+    const { colliders = 0, particleRadius = 0, particleFriction, particleMask, count } = definition;
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
     checkArray("position", position);
     const { length } = position;
@@ -343,7 +350,7 @@ export function define(take, definition) {
     const [linkPointer, linkCount] = lendLinks(take, links);
     const [weightedPointer, weightedCount] = weightedLinks ? lendWeightedLinks(take, weightedLinks) : [0, 0];
     const pins = pinned && Array.from(pinned, (pin) => (pin ? 1 : 0));
-    const { def_begin, def_links, def_weighted_links, def_forces, def_check } = library();
+    const { def_begin, def_links, def_contacts, def_weighted_links, def_forces, def_check } = library();
     def_begin(
         axes,
         set,
@@ -355,10 +362,23 @@ export function define(take, definition) {
         typeof mass === "number" ? mass : 0,
         optional(pins, "uint8", 1),
     );
-    for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius })) checkFinite(name, value);
+    const radii = typeof particleRadius === "number" ? undefined : particleRadius;
+    const radius = radii ? 0 : particleRadius;
+    for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius: radius }))
+        checkFinite(name, value);
+    for (const [name, values] of Object.entries({ particleRadius: radii, particleFriction, particleMask }))
+        if (values !== undefined) checkArray(name, values, particles);
+    Array.from(particleMask ?? [], (mask, i) => checkUpTo(`particleMask[${i}]`, mask, 0xffffffff));
     checkUpTo("colliders", colliders, 32);
     check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
-    def_links(linkCount, linkPointer, colliders, particleRadius);
+    def_links(linkCount, linkPointer);
+    def_contacts(
+        colliders,
+        radius,
+        optional(radii),
+        optional(particleFriction),
+        optional(particleMask, "uint32", 4),
+    );
     def_weighted_links(weightedCount, weightedPointer);
     const [x = 0, y = 0, z = 0] = gravity;
     def_forces(x, y, z, drag, maxSpeed, force !== null);

@@ -112,6 +112,8 @@ export interface Body {
     spinAcceleration?: ArrayLike<number>;
     /** [m/s] further velocity of the surface, as of a conveyor belt */
     surface?: ArrayLike<number>;
+    /** collides with particles whose mask has a bit in common; 0 (default) means all bits */
+    mask?: number;
 }
 
 /** What particles gave to a collider. */
@@ -196,8 +198,12 @@ export interface SceneDefinition {
     heldForces?: boolean;
     /** maximum number of colliders, at most 32; default 0 */
     colliders?: number;
-    /** [m] of every particle, for contacts */
-    particleRadius?: number;
+    /** [m] of every particle or per particle, for contacts */
+    particleRadius?: number | ArrayLike<number>;
+    /** per particle, >= 0: factor of the friction of colliders; default 1 */
+    particleFriction?: ArrayLike<number>;
+    /** per particle an integer: it collides with colliders whose mask has a bit in common, 0: with none; default all bits */
+    particleMask?: ArrayLike<number>;
     /** no second copy of the state: a step that fails loses it */
     noUndo?: boolean;
     force?: Force | null;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A heavy ball of your own, which is not part of the scene, falls on a cloth that hangs between two bars, and comes to rest.
+ * Then a hand pulls it down and lets go: the cloth throws it like a sling.
  *
  *     cc -std=c11 ball.c -lspringstep -lm -o ball
  *
@@ -10,16 +11,18 @@
  *
  * Its `acceleration` in the next call is that of the last one, g + J/(M T), so that the ball moves smoothly. This coupling
  * is explicit. It is stable for omega T <= 0.35, where omega^2 = (stiffness that the ball feels)/M. So impulses are
- * exchanged several times per frame here.
+ * exchanged several times per frame here. While the hand holds the ball, its velocity is the hand's.
  */
 #include <springstep/scene.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { SIDE = 15, N = SIDE * SIDE, EXCHANGES = 4, STEPS = 16 }; /* STEPS steps between exchanges */
 static const double frame = 1.0 / 60, g[3] = {0, -9.81, 0}, mass = 5, radius = 0.2,
-                    air = 1; /* [1/s] drag of the ball */
+                    air = 1, /* [1/s] drag of the ball */
+    hand[3] = {0, -0.6, 0};  /* [m/s] */
 
 static void must(spring_status status)
 {
@@ -68,7 +71,8 @@ int main(void)
     const double T = frame / EXCHANGES;
     spring_collider ball = {
         .shape = SPRING_SPHERE, .at = {0.013, radius + 0.03, 0.007}, .radius = radius, .friction = 0.3};
-    for (int i = 1; i <= 20 * 60; i++) {
+    for (int i = 1; i <= 21 * 60 + 20; i++) {
+        const bool held = i > 20 * 60 && i <= 20 * 60 + 30;
         for (int k = 0; k < EXCHANGES; k++) {
             spring_impulse given;
             must(spring_scene_set_colliders(cloth, &ball, 1));
@@ -77,11 +81,11 @@ int main(void)
             for (int a = 0; a < 3; a++) {
                 const double accel = g[a] + given.linear[a] / (mass * T) - air * ball.velocity[a];
                 ball.at[a] += T * ball.velocity[a] + T * T / 2 * ball.acceleration[a]; /* where the collider is now */
-                ball.velocity[a] += T * accel;
-                ball.acceleration[a] = accel;
+                ball.velocity[a] = held ? hand[a] : ball.velocity[a] + T * accel;
+                ball.acceleration[a] = held ? 0 : accel;
             }
         }
-        if (i % 120 == 0)
+        if (i % 120 == 0 || (i > 20 * 60 && i % 10 == 0))
             printf("%4.1f s  height %.4f m  speed %.1e m/s\n", i * frame, ball.at[1],
                    hypot(hypot(ball.velocity[0], ball.velocity[1]), ball.velocity[2]));
     }

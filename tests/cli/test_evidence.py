@@ -52,6 +52,7 @@ def errors_of(contacts, case, scheme):
 
 @pytest.mark.parametrize('case, steps, bound', [  # a factor of two above the prototype of the scheme
     ('bounce', 8, 3e-5), ('sphere', 4, 5e-5), ('creep', 4, 0), ('slide', 4, 1e-12), ('capstan', 8, 5e-3), ('capstan', 16, 5e-3),
+    ('block-1', 4, 4e-4), ('block-3', 4, 7e-4), ('bat', 4, 5e-5), ('turning-plane', 4, 2e-4), ('turntable', 16, 1e-11),
     ('plate-80', 4, 0), ('plate-500', 4, 0)])
 def test_contacts_of_the_library(contacts, case, steps, bound):
     assert errors_of(contacts, case, 'library')[steps] <= bound
@@ -64,6 +65,9 @@ def test_schemes_of_engines_are_of_lower_order(contacts):
         assert abs(math.log2(projection[4] / projection[16]) / 2 - 1) <= 0.15
         assert math.log2(library[4] / library[16]) / 2 >= 1.7
         assert all(library[steps] < projection[steps] / 50 for steps in library)
+    for case in ('block-1', 'block-2', 'block-3', 'turning-plane'):
+        library = errors_of(contacts, case, 'library')
+        assert math.log2(library[4] / library[16]) / 2 >= 1.9
     assert min(errors_of(contacts, 'plate-500', scheme)[4] for scheme in ('projection', 'penalty')) > 900
     assert errors_of(contacts, 'creep', 'penalty')[4] > 1e-4
 

@@ -469,8 +469,12 @@ def test_free_end_of_a_rope_bounces(restitution):
 
 def test_fields_of_colliders(frames_of):
     """The box, the capsule and the plane of a wall stop a rope in a row of ways; a collider that is far away changes no bit."""
+    def end(*colliders):
+        row = frames_of('--scene', 'rope', *FALLING_ROPE, '--duration', '0.5', '--dt', '0x1p-10', *colliders)[0][-1]
+        return float(row['x_m']), float(row['z_m'])
+
     def height(*colliders):
-        return float(frames_of('--scene', 'rope', *FALLING_ROPE, '--duration', '0.5', '--dt', '0x1p-10', *colliders)[0][-1]['z_m'])
+        return end(*colliders)[1]
 
     free = height()
     assert free == height('--collider', 'sphere:z=90,radius=1')
@@ -478,7 +482,14 @@ def test_fields_of_colliders(frames_of):
     assert abs(height('--collider', 'capsule:x=0.5,z=-.5,x2=1.5,z2=-.5,radius=.1') + 0.4) < 1e-12
     assert abs(height('--collider', 'plane:z=-.5,nz=2', '--particle-radius', '.125') + 0.375) < 1e-12
     assert abs(height('--collider', 'plane:z=-1,vz=1') + 0.5) < 1e-12  # rises for half a second
-    assert height('--collider', 'plane:nx=1,x=-9') == free
+    assert abs(height('--collider', 'plane:z=-1,az=4') + 0.5) < 1e-12
+    for turned in ('wy=-.5', 'way=-2'):  # by 0.25 rad, so that x rises
+        x, z = end('--collider', f'plane:z=-1,{turned}')
+        assert abs(z + 1 - x * math.tan(0.25)) < 1e-12
+    belt = end('--collider', 'plane:z=-.5,sx=1,friction=9')[0]
+    assert abs(belt - 1 - (0.5 - math.sqrt(1 / 9.81))) < 1e-5  # from the impact on; it falls on a parabola of steps
+    assert height('--collider', 'plane:z=-.5,mask=2') == height('--collider', 'plane:z=-.5,mask=4294967294') == -0.5
+    assert free == height('--collider', 'plane:z=-.5,mask=1') == height('--collider', 'plane:nx=1,x=-9')
 
 
 @pytest.mark.parametrize('words, wanted', [
@@ -487,6 +498,8 @@ def test_fields_of_colliders(frames_of):
     ('sphere:radius=-1', ['radius=-1', '>= 0']),
     ('plane:restitution=2', ['restitution=2', 'from 0 to 1']),
     ('plane:friction', ['"friction"', '>= 0']),
+    ('plane:mask=1.5', ['mask=1.5', 'integer from 0 to 2^32 - 1']),
+    ('plane:mask=4294967296', ['mask=4294967296']),
     ('plane:z=1x', ['z=1x', 'finite number']),
     ('plane:z=', ['"z="']),
     ('plane:z=nan', ['z=nan']),

@@ -101,6 +101,8 @@ typedef struct definition {
     uint8_t pinned[most_particles];
     spring_link link[most_links];
     spring_weighted_link weighted[most_weighted];
+    double radius[most_particles], friction[most_particles];
+    uint32_t mask[most_particles];
 } definition;
 
 #define CALLBACK(name)                                                                        \
@@ -217,6 +219,20 @@ static void disturb(definition *d)
     d->def.links = kept;
 }
 
+/* Contacts of particles that differ. */
+static void further_contacts(definition *d)
+{
+    const uint32_t how = take();
+    for (size_t i = 0; how > 0 && i < d->def.particles; i++) {
+        d->radius[i] = how & 1 ? size() : 0;
+        d->friction[i] = how & 2 ? size() : 0;
+        d->mask[i] = how & 4 ? choose(8) : 0;
+    }
+    d->def.radius = how & 1 ? d->radius : NULL;
+    d->def.friction = how & 2 ? d->friction : NULL;
+    d->def.mask = how & 4 ? d->mask : NULL;
+}
+
 static void define(definition *d)
 {
     memset(d, 0, sizeof *d);
@@ -252,6 +268,8 @@ static void define(definition *d)
     d->def.particle_radius = d->def.colliders > 0 ? size() : 0;
     if ((what & 128) == 0)
         further_links(d);
+    if (d->def.colliders > 0)
+        further_contacts(d);
 }
 
 /* --------------------------------------------------------------------------------------------------------- a scene */
@@ -337,6 +355,9 @@ static void keep_pristine(const definition *d)
     def->mass = def->mass != NULL ? pristine.mass : NULL;
     def->pinned = pristine.pinned;
     def->link = def->link != NULL ? pristine.link : NULL;
+    def->radius = def->radius != NULL ? pristine.radius : NULL;
+    def->friction = def->friction != NULL ? pristine.friction : NULL;
+    def->mask = def->mask != NULL ? pristine.mask : NULL;
 }
 
 /* Both scenes, and what is known of them. Only the first is queried, and only its calls fail or do nothing. */
@@ -346,6 +367,7 @@ typedef struct life {
     uint32_t axes;
     bool broken; /* an advance without rollback has failed */
     uint32_t colliders;
+    spring_collider collider[4];
 } life;
 
 /* The other one becomes a copy, as a snapshot is taken. */
@@ -486,6 +508,40 @@ static void any_axes(double axis[3][3])
         axis[choose(3)][choose(3)] = number();
 }
 
+/* Hills, a valley as two contacts, hills with a hole, and a function that does not keep its promises. */
+static uint32_t any_gap(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    const uint8_t kind = *(const uint8_t *)user;
+    for (int k = 0; k < 2; k++) {
+        const double slope = kind == 1 ? (k ? 0.75 : -0.75) : 0.3 * cos(y[0]), root = sqrt(1 + slope * slope);
+        const double n[3] = {-slope / root, 1 / root, 0};
+        memcpy(normal[k], n, sizeof n);
+        gap[k] = kind == 1 ? (y[1] - slope * y[0]) / root : (y[1] - 0.3 * sin(y[0])) / 1.05;
+    }
+    if (kind == 2 && y[0] > 1.5)
+        gap[0] = (double)NAN;
+    if (kind == 3)
+        gap[0] = 5 * sin(9 * gap[0]), normal[0][0] = y[2];
+    return kind == 1 ? 2 : 1;
+}
+
+/* What a collider may have besides a shape and a velocity. */
+static void further_motion(spring_collider *c)
+{
+    static uint8_t kinds[] = {0, 1, 2, 3};
+    const uint32_t how = take();
+    for (int a = 0; a < 3 && how > 0; a++) {
+        c->acceleration[a] = how & 1 ? number() : 0;
+        c->spin_acceleration[a] = how & 2 ? number() : 0;
+        c->surface[a] = how & 4 ? number() : 0;
+    }
+    c->mask = how & 8 ? choose(8) : 0;
+    if (how & 16) {
+        c->shape = SPRING_CUSTOM, c->gap = any_gap, c->user = &kinds[how >> 5 & 3];
+        c->thickness = size(), c->bound = how & 128 ? size() : 0;
+    }
+}
+
 static spring_collider any_collider(void)
 {
     spring_collider c = {.shape = (spring_shape)choose(choose(16) == 15 ? 6 : 4), .radius = size()};
@@ -499,7 +555,10 @@ static spring_collider any_collider(void)
         c.spin[a] = choose(4) == 0 ? number() : 0;
     }
     c.friction = choose(2) == 0 ? 0 : size();
-    c.restitution = choose(9) / 8.0;
+    const uint32_t last = take();
+    c.restitution = last % 9 / 8.0;
+    if (last >= 96)
+        further_motion(&c);
     return c;
 }
 
@@ -520,6 +579,7 @@ static void colliders_are_set(life *l)
 {
     must(l->d->def.colliders > 0, "there was room");
     l->colliders = (uint32_t)with.count;
+    memcpy(l->collider, with.collider, sizeof l->collider);
 }
 
 /* Pins, or masses, of a range of particles. */
@@ -732,6 +792,10 @@ static void ask(life *l)
         must(for_scenes(m) ? step >= 0 : isnan(step), "a step, 0 or infinite; NaN for no method");
     }
     must(isnan(spring_scene_tension(l->one.s, l->d->def.links)), "there are no more links");
+    spring_impulse given[4];
+    must(spring_scene_impulses(l->one.s, given, 0, l->colliders) ==
+             (l->d->def.colliders > 0 ? SPRING_OK : SPRING_EDISABLED),
+         "impulses of the present colliders");
     const double v_tol = size(), a_tol = size();
     (void)spring_scene_at_rest(l->one.s, v_tol, a_tol);
 }
@@ -742,10 +806,14 @@ static void travel(life *l)
     static uint8_t saved[1 << 17];
     size_t bytes = sizeof saved;
     const spring_status status = spring_scene_save(l->other.s, saved, &bytes);
-    must(status == (l->broken ? SPRING_ENONFINITE : SPRING_OK), "a state can be saved unless it is lost");
+    look(l->other.s, l->d, &before); /* a step that fails before it begins, for its time, loses nothing */
+    must(status == SPRING_OK ? !l->broken || finite(&before) : l->broken && status == SPRING_ENONFINITE,
+         "a state can be saved unless it is lost");
     if (status != SPRING_OK)
         return;
     must(spring_scene_init(l->other.block, l->other.bytes, &pristine.def, &l->other.s) == SPRING_OK, "as before");
+    must(l->colliders == 0 || spring_scene_set_colliders(l->other.s, l->collider, l->colliders) == SPRING_OK,
+         "functions of custom bodies do not travel");
     saved[bytes / 2] ^= 1;
     must(spring_scene_load(l->other.s, saved, bytes) == SPRING_EINVAL, "damaged");
     saved[bytes / 2] ^= 1;
@@ -763,7 +831,7 @@ static void goes_on_alike(life *l, const place *p)
     if (spring_scene_get(l->other.s, SPRING_POSITION, first, 0, 0, 1) == SPRING_OK)
         (void)spring_scene_set(l->other.s, SPRING_POSITION, first, 0, 0, 1);
     const spring_status status = spring_scene_advance(l->other.s, SPRING_LEAPFROG, dt, 3);
-    must(spring_scene_advance(p->s, SPRING_LEAPFROG, dt, 3) == status ||
+    must(spring_scene_advance(p->s, SPRING_LEAPFROG, dt, 3) == status || l->d->def.force != NULL ||
              !isfinite(spring_scene_time(l->one.s) + 3 * dt),
          "the same answer");
     look(l->other.s, l->d, &old);
@@ -805,6 +873,8 @@ static void live(life *l)
     } choices[19] = {{NULL, 0},   {set_all, 0}, {get, 0},  {NULL, 1},    {NULL, 2},    {ask, 0},     {copy_over, 0},
                      {remake, 0}, {NULL, 3},    {NULL, 4}, {advance, 0}, {advance, 0}, {advance, 0}, {advance, 0},
                      {NULL, 5},   {tear, 0},    {NULL, 6}, {NULL, 7},    {travel, 0}};
+    if (l->d->def.colliders > 0)
+        make(l, &changes[7]); /* set_colliders() */
     for (int call = 0; call < most_calls && next < end; call++) {
         const uint32_t what = take(), old = 200, choice = what < old ? what % 14 : 14 + what % 5;
         if (choices[choice].other != NULL)
@@ -826,7 +896,8 @@ static bool check_definition(const definition *d, size_t *bytes)
     uint64_t tiny[SPRING_SCENE_ALIGN / sizeof(uint64_t)];
     const spring_status status = spring_scene_check(&d->def, &field, &index);
     must((field == NULL) == (status == SPRING_OK), "the error is named");
-    must(index == 0 || index < d->def.particles || index < d->def.links || index < 3, "and where it is");
+    must(index == 0 || index < d->def.particles || index < d->def.links || index < d->def.weighted_links || index < 3,
+         "and where it is");
     must(spring_scene_bytes(&d->def, bytes) == status, "bytes() agrees with check()");
     if (status == SPRING_OK) {
         must(*bytes > 0 && *bytes % SPRING_SCENE_ALIGN == 0, "a multiple of the alignment");

@@ -458,6 +458,74 @@ static double plate(contact_scheme scheme, double dt, double speed)
     return through;
 }
 
+/* [m] distance from the exact position, after a box that turns has hit a particle at rest. Half of its thickness is 5 cm. */
+static double bat(contact_scheme scheme, double dt, double rate)
+{
+    const double x[3] = {0.32, 0.24, 0}, v[3] = {0}, half = 0.05, end = 0.1;
+    const spring_scene_def def = one_particle(x, v, 0);
+    const spring_collider c = {.shape = SPRING_BOX,
+                               .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                               .half = {0.5, half, 1},
+                               .spin = {0, 0, rate},
+                               .restitution = 1};
+    const double r = hypot(x[0], x[1]), angle = atan2(x[1], x[0]) - asin(half / r);
+    const double way = 2 * rate * sqrt(r * r - half * half) * (end - angle / rate);
+    double y[3], u[3];
+    state_after(scheme, &def, &c, dt, end, 0, y, u);
+    return hypot(y[0] - x[0] + way * sin(angle), y[1] - x[1] - way * cos(angle));
+}
+
+/* [m] distance from the exact position of a bead on a plane that turns under it, rho'' = rate^2 rho - g sin(rate t). */
+static double turning_plane(contact_scheme scheme, double dt, double rate)
+{
+    const double rho = 0.3, speed = 2.5, end = 0.7, turned = rate * end;
+    const double x[3] = {rho, 0, 0}, v[3] = {speed, rate * rho, 0};
+    const spring_scene_def def = one_particle(x, v, g);
+    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .spin = {0, 0, rate}};
+    const double exact =
+        rho * cosh(turned) + (speed - g / (2 * rate)) / rate * sinh(turned) + g / (2 * rate * rate) * sin(turned);
+    double y[3], u[3];
+    state_after(scheme, &def, &c, dt, end, 0, y, u);
+    return hypot(y[0] - exact * cos(turned), y[1] - exact * sin(turned));
+}
+
+/* [m] change of the radius of a particle that friction holds on a turntable for 100 s. */
+static double turntable(contact_scheme scheme, double dt, double rate)
+{
+    const double radius = 0.5, x[3] = {radius, 0, 0}, v[3] = {0, 0, -rate * radius};
+    const spring_scene_def def = one_particle(x, v, g);
+    spring_collider c = ground;
+    c.friction = 0.8, c.spin[1] = rate;
+    double y[3], u[3];
+    state_after(scheme, &def, &c, dt, 100, 0, y, u);
+    return fabs(hypot(y[0], y[2]) - radius);
+}
+
+/* [m] distance from the exact position and velocity/rate of a block on a spring, released at 1 m, after a number of
+   reversals. It moves on half waves about +- friction g/rate^2. */
+static double block(contact_scheme scheme, double dt, double reversals)
+{
+    const double friction = 0.1, half = 0.47, rate = pi / half, shift = friction * g / (rate * rate), mass = 0.7;
+    const double x[6] = {-10, 0, 0, 1, 0, 0}, end = 0.3 + 0.45 * reversals; /* [s] multiples of all steps */
+    const uint8_t pinned[2] = {1, 0};
+    const spring_link link = {0, 1, 10, mass * rate * rate, 0, 0};
+    const spring_scene_def def = {.particles = 2,
+                                  .links = 1,
+                                  .position = x,
+                                  .mass_all = mass,
+                                  .pinned = pinned,
+                                  .link = &link,
+                                  .gravity = {0, -g, 0}};
+    spring_collider c = ground;
+    c.friction = friction;
+    double centre = shift, amplitude = 1 - shift, y[3], u[3];
+    for (int i = 0; i < reversals; i++)
+        amplitude -= 2 * shift, centre = -centre;
+    const double phase = rate * (end - reversals * half), side = centre > 0 ? 1 : -1;
+    state_after(scheme, &def, &c, dt, end, 1, y, u);
+    return hypot(y[0] - centre - side * amplitude * cos(phase), u[0] / rate + side * amplitude * sin(phase));
+}
+
 typedef struct contact_case {
     const char *name, *purpose;
     double (*run)(contact_scheme scheme, double dt, double parameter);
@@ -465,7 +533,7 @@ typedef struct contact_case {
     int schemes; /* number of schemes, the first of contact_scheme_names */
 } contact_case;
 
-enum { case_count = 10 };
+enum { case_count = 16 };
 
 static void make_cases(contact_case c[case_count])
 {
@@ -484,6 +552,15 @@ static void make_cases(contact_case c[case_count])
          contact_schemes},
         {"capstan", "ratio of the tensions of a rope over a cylinder, friction 0.3", capstan, 0.3, exp(0.3 * pi),
          CONTACT_PROJECTION + 1},
+        {"block-1", "distance from the exact state [m], block on a spring with friction 0.1, one reversal", block, 1, 0,
+         contact_schemes},
+        {"block-2", "the same after two reversals", block, 2, 0, contact_schemes},
+        {"block-3", "the same after three reversals", block, 3, 0, contact_schemes},
+        {"bat", "distance from the exact position [m], hit by a box that turns at 10 rad/s", bat, 10, 0, 1},
+        {"turning-plane", "distance from the exact position [m], on a plane that turns at 2 rad/s", turning_plane, 2, 0,
+         1},
+        {"turntable", "change of the radius in 100 s [m], held by friction on a turntable at 3 rad/s", turntable, 3, 0,
+         1},
         {"plate-80", "particles of 1000 that a plate at 80 m/s passes through", plate, 80, 0, contact_schemes},
         {"plate-500", "particles of 1000 that a plate at 500 m/s passes through", plate, 500, 0, contact_schemes},
     };

@@ -681,6 +681,54 @@ await test("contacts: accelerating bodies, belts and impulses", () => {
     scene.free();
 });
 
+await test("contacts: radius, friction and mask of particles, mask of colliders", () => {
+    const definition = {
+        position: [0, 1, 0, 2, 1, 0, 4, 1, 0, 6, 1, 0],
+        velocity: [1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0],
+        gravity: [0, -10, 0],
+        colliders: 2,
+        particleRadius: [0.1, 0.2, 0, 0.3],
+        particleFriction: Float64Array.of(1, 0, 1, 1),
+        particleMask: [1, 3, 0x80000000, 0],
+    };
+    const scene = new Scene(definition);
+    scene.setColliders([
+        { shape: "plane", friction: 1, mask: 1 },
+        { shape: "plane", at: [0, -1, 0], friction: 1, mask: 0xfffffffe },
+    ]);
+    scene.advance("leapfrog", 1 / 512, 1024);
+    const [x, v] = [scene.get("position"), scene.get("velocity")];
+    const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12, `${a}, not ${b}`);
+    for (const [i, height] of [0.1, 0.2, -1, 1 - 20].entries()) near(x[3 * i + 1], height);
+    for (const [i, speed] of [0, 1, 0, 1].entries()) near(v[3 * i], speed);
+    assert.deepEqual([...scene.touching()], [1, 1, 2, 0]);
+    const state = scene.save();
+    new Scene(definition).load(state);
+    assert.throws(() => new Scene({ ...definition, particleMask: [1, 3, 4, 0] }).load(state), RangeError);
+    refused(
+        () => scene.setColliders([{ shape: "plane", mask: -1 }]),
+        "RangeError: colliders[0].mask must be an integer from 0 to 4294967295, got -1",
+    );
+    for (const [more, wanted] of [
+        [
+            { particleRadius: [0, -1, 0, 0] },
+            "RangeError: particleRadius[1] must be a finite number >= 0, got -1",
+        ],
+        [
+            { particleFriction: [0, 0, NaN, 0] },
+            "RangeError: particleFriction[2] must be a finite number >= 0, got NaN",
+        ],
+        [
+            { particleMask: [1, 0.5, 0, 0] },
+            "RangeError: particleMask[1] must be an integer from 0 to 4294967295, got 0.5",
+        ],
+        [{ particleMask: [1] }, "RangeError: particleMask.length must be 4, got 1"],
+        [{ particleFriction: 1 }, "TypeError: particleFriction must be an array, got 1"],
+    ])
+        refused(() => new Scene({ ...definition, ...more }), wanted);
+    scene.free();
+});
+
 await test("contacts: shapes, motion, friction, which touch", () => {
     const drop = (collider, more = {}) => {
         const scene = new Scene({

@@ -26,9 +26,10 @@ const definition: SceneDefinition = {
     heldForces: true,
     colliders: 1,
     particleRadius: 0.01,
+    particleMask: new Uint32Array(81).fill(3),
     force: wind,
 };
-const floor: Collider = { shape: "plane", at: [0, 0, -9], normal: [0, 0, 1], friction: 0.5 };
+const floor: Collider = { shape: "plane", at: [0, 0, -9], normal: [0, 0, 1], friction: 0.5, mask: 2 };
 const links: Links = soften(definition, 1 / 600);
 let time: number;
 let torn: number;

@@ -117,13 +117,21 @@ void def_forces(double x, double y, double z, double drag, double max_speed, boo
     def.force = called ? force_of_javascript : NULL;
 }
 
-EXPORT(def_links)
-void def_links(size_t links, const spring_link *link, uint32_t colliders, double particle_radius)
+EXPORT(def_links) void def_links(size_t links, const spring_link *link)
 {
     def.links = links;
     def.link = link;
+}
+
+EXPORT(def_contacts)
+void def_contacts(uint32_t colliders, double particle_radius, const double *radius, const double *friction,
+                  const uint32_t *mask)
+{
     def.colliders = colliders;
     def.particle_radius = particle_radius;
+    def.radius = radius;
+    def.friction = friction;
+    def.mask = mask;
 }
 
 EXPORT(def_weighted_links) void def_weighted_links(size_t links, const spring_weighted_link *link)

@@ -7,7 +7,7 @@ access to the C functions with cffi.
 """
 from springstep._batch import Batch
 from springstep._clock import Clock
-from springstep._colliders import Collider, box, capsule, plane, sphere
+from springstep._colliders import Collider, box, capsule, custom, plane, sphere
 from springstep._common import (InvalidError, Method, MethodName, NonFiniteError, RangeError, SpringError, UnstableError,
                                 UnsupportedError, _text, methods, self_test)
 from springstep._force import Force
@@ -23,6 +23,6 @@ __version__ = _text(lib.spring_version())
 __all__ = [
     "Batch", "Clock", "Collider", "Energies", "Force", "Grid", "InvalidError", "LINK", "Mesh", "Method", "MethodName",
     "NonFiniteError", "RangeError", "Scene", "Snapshot", "Spring", "SpringError", "TENSION_ONLY", "TETHER", "UnstableError",
-    "UnsupportedError", "WEIGHTED_LINK", "bend_grid", "bend_mesh", "bend_rod", "box", "capsule", "components", "ffi",
+    "UnsupportedError", "WEIGHTED_LINK", "bend_grid", "bend_mesh", "bend_rod", "box", "capsule", "components", "custom", "ffi",
     "from_mesh", "grid", "lib", "methods", "plane", "self_test", "sphere", "sweep", "tethers",
 ]

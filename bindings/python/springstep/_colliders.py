@@ -3,38 +3,61 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from springstep._common import invalid
-from springstep._native import lib
+from springstep._force import InC, function_in_c
+from springstep._native import ffi, lib
 
-_SHAPES = {"plane": lib.SPRING_PLANE, "sphere": lib.SPRING_SPHERE, "capsule": lib.SPRING_CAPSULE, "box": lib.SPRING_BOX}
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+_SHAPES = {"plane": lib.SPRING_PLANE, "sphere": lib.SPRING_SPHERE, "capsule": lib.SPRING_CAPSULE, "box": lib.SPRING_BOX,
+           "custom": lib.SPRING_CUSTOM}
+
+
+class ColliderOptions(TypedDict, total=False):
+    """Fields of `Collider` that all shapes have."""
+
+    velocity: ArrayLike
+    spin: ArrayLike
+    friction: float
+    restitution: float
+    acceleration: ArrayLike
+    spin_acceleration: ArrayLike
+    surface: ArrayLike
+    mask: int
 
 
 @dataclass(slots=True)
 class Collider:
-    """A convex body that particles cannot enter, as in C. `plane`, `sphere`, `capsule` and `box` make one.
+    """A body that particles cannot enter, as in C. `plane`, `sphere`, `capsule`, `box` and `custom` make one.
 
     Vectors have three numbers, or two for scenes with two axes, where a spin is a number.
     """
 
-    shape: Literal["plane", "sphere", "capsule", "box"]
+    shape: Literal["plane", "sphere", "capsule", "box", "custom"]
     at: ArrayLike = (0, 0, 0)  #: [m] a point of the plane, the centre, or one end of the capsule
     to: ArrayLike = (0, 0, 0)  #: [m] the other end of the capsule
-    axis: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))  #: the first: unit normal of the plane; box: unit axes
+    axis: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))  #: the first: unit normal of the plane; box, custom: unit axes
     half: ArrayLike = (0, 0, 0)  #: [m] box: half of its size along each axis, without the radius
-    radius: float = 0.0  #: [m] of a sphere or capsule; also rounds a box
+    radius: float = 0.0  #: [m] of a sphere or capsule; also rounds a box; is added to a custom body
     velocity: ArrayLike = (0, 0, 0)  #: [m/s] of `at`
     velocity_to: ArrayLike = (0, 0, 0)  #: [m/s] of `to`
-    spin: ArrayLike = (0, 0, 0)  #: [rad/s] turns planes and boxes about `at`; of spheres and capsules the surface
+    spin: ArrayLike = (0, 0, 0)  #: [rad/s] turns bodies about `at`; of spheres and capsules only the surface
     friction: float = 0.0  #: Coulomb coefficient >= 0
     restitution: float = 0.0  #: 0 to 1: normal speed after an impact divided by that before
     acceleration: ArrayLike = (0, 0, 0)  #: [m/s^2] of `at` and `to`
     spin_acceleration: ArrayLike = (0, 0, 0)  #: [rad/s^2]
     surface: ArrayLike = (0, 0, 0)  #: [m/s] further velocity of the surface, as of a conveyor belt
+    mask: int = 0  #: collides with particles whose mask has a bit in common; 0 means all bits
+    gap: InC | None = None  #: custom: a function in C of type `spring_gap_fn`
+    gap_data: NDArray[Any] | None = None  #: custom: the function receives a pointer to its first element as `user`
+    thickness: float = 0.0  #: [m] custom: least thickness of the body, > 0
+    bound: float = 0.0  #: [m] custom: radius of a sphere about `at` that contains the body without its radius; 0: none
 
     def _fill(self, c: Any, axes: int, place: int) -> None:
         """Copy all fields to a structure of C, for a scene with so many axes."""
@@ -60,12 +83,28 @@ class Collider:
         rows: Any = self.axis
         for row, axis in enumerate(rows[:3]):
             c.axis[row] = vector("axis", axis)
-        for field in ("radius", "friction", "restitution"):
+        for field in ("radius", "friction", "restitution", "thickness", "bound"):
             setattr(c, field, getattr(self, field))
+        if not 0 <= self.mask < 2**32:
+            invalid("colliders.mask", self.mask, place, reason="not an integer from 0 to 2^32 - 1")
+        c.mask = self.mask
+        if self.shape == "custom":
+            found = function_in_c(f"colliders[{place}].gap", self.gap, self.gap_data, _GAP, _is_gap)
+            if found is None:
+                raise TypeError(f"colliders[{place}].gap: a {type(self.gap).__name__}, not a function in C")
+            c.gap, c.user = ffi.cast("spring_gap_fn *", found[0]), ffi.cast("void *", found[1])
 
 
-def plane(at: ArrayLike, normal: ArrayLike, *, velocity: ArrayLike = (0, 0, 0), spin: ArrayLike = (0, 0, 0),
-          friction: float = 0.0, restitution: float = 0.0) -> Collider:
+_GAP = "uint32_t (void *, double *, double *, double (*)[3])"
+
+
+def _is_gap(result: str, arguments: list[str]) -> bool:
+    """Return whether C functions with this signature are surfaces of custom bodies."""
+    numbers = all(argument.startswith("double") and argument[-1] in "*]" for argument in arguments[1:])
+    return result in ("uint32_t", "uint", "unsignedint") and len(arguments) == 4 and arguments[0].endswith("*") and numbers
+
+
+def plane(at: ArrayLike, normal: ArrayLike, **options: Unpack[ColliderOptions]) -> Collider:
     """Return a half-space, from a point of its surface and its normal.
 
     Parameters
@@ -74,19 +113,17 @@ def plane(at: ArrayLike, normal: ArrayLike, *, velocity: ArrayLike = (0, 0, 0), 
         A point of the surface [m].
     normal : array_like
         Vector of any length > 0, which points out of the body.
-    velocity, spin, friction, restitution
-        See `Collider`.
+    **options
+        velocity, spin, friction, restitution, acceleration, spin_acceleration, surface, mask: see `Collider`.
     """
     length = float(np.linalg.norm(normal))
     if not 0 < length < np.inf:
         invalid("normal", normal, reason="not a vector with a length greater than 0")
     unit = [component / length for component in np.asarray(normal, np.float64).tolist()]
-    return Collider("plane", at, axis=(unit, (0, 0, 0), (0, 0, 0)), velocity=velocity, spin=spin, friction=friction,
-                    restitution=restitution)
+    return Collider("plane", at, axis=(unit, (0, 0, 0), (0, 0, 0)), **options)
 
 
-def sphere(at: ArrayLike, radius: float, *, velocity: ArrayLike = (0, 0, 0), spin: ArrayLike = (0, 0, 0),
-           friction: float = 0.0, restitution: float = 0.0) -> Collider:
+def sphere(at: ArrayLike, radius: float, **options: Unpack[ColliderOptions]) -> Collider:
     """Return a sphere.
 
     Parameters
@@ -95,15 +132,14 @@ def sphere(at: ArrayLike, radius: float, *, velocity: ArrayLike = (0, 0, 0), spi
         The centre [m].
     radius : float
         [m] > 0.
-    velocity, spin, friction, restitution
-        See `Collider`.
+    **options
+        As of `plane`.
     """
-    return Collider("sphere", at, radius=radius, velocity=velocity, spin=spin, friction=friction, restitution=restitution)
+    return Collider("sphere", at, radius=radius, **options)
 
 
-def capsule(at: ArrayLike, to: ArrayLike, radius: float, *, velocity: ArrayLike = (0, 0, 0),
-            velocity_to: ArrayLike | None = None, spin: ArrayLike = (0, 0, 0), friction: float = 0.0,
-            restitution: float = 0.0) -> Collider:
+def capsule(at: ArrayLike, to: ArrayLike, radius: float, *, velocity_to: ArrayLike | None = None,
+            **options: Unpack[ColliderOptions]) -> Collider:
     """Return a capsule, which is all points within a radius of a line.
 
     Parameters
@@ -114,17 +150,15 @@ def capsule(at: ArrayLike, to: ArrayLike, radius: float, *, velocity: ArrayLike 
         [m] > 0.
     velocity_to : array_like, optional
         Velocity of `to` [m/s]; None: that of `at`.
-    velocity, spin, friction, restitution
-        See `Collider`.
+    **options
+        As of `plane`.
     """
-    return Collider("capsule", at, to, radius=radius, velocity=velocity,
-                    velocity_to=velocity if velocity_to is None else velocity_to, spin=spin, friction=friction,
-                    restitution=restitution)
+    end = options.get("velocity", (0, 0, 0)) if velocity_to is None else velocity_to
+    return Collider("capsule", at, to, radius=radius, velocity_to=end, **options)
 
 
 def box(at: ArrayLike, half: ArrayLike, *, axis: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), radius: float = 0.0,
-        velocity: ArrayLike = (0, 0, 0), spin: ArrayLike = (0, 0, 0), friction: float = 0.0,
-        restitution: float = 0.0) -> Collider:
+        **options: Unpack[ColliderOptions]) -> Collider:
     """Return a box.
 
     Parameters
@@ -137,8 +171,31 @@ def box(at: ArrayLike, half: ArrayLike, *, axis: ArrayLike = ((1, 0, 0), (0, 1, 
         Unit axes, one per row.
     radius : float
         Is added to the box, and rounds its edges [m].
-    velocity, spin, friction, restitution
-        See `Collider`.
+    **options
+        As of `plane`.
     """
-    return Collider("box", at, axis=axis, half=half, radius=radius, velocity=velocity, spin=spin, friction=friction,
-                    restitution=restitution)
+    return Collider("box", at, axis=axis, half=half, radius=radius, **options)
+
+
+def custom(gap: InC, thickness: float, *, gap_data: NDArray[Any] | None = None, bound: float = 0.0,
+           at: ArrayLike = (0, 0, 0), axis: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), radius: float = 0.0,
+           **options: Unpack[ColliderOptions]) -> Collider:
+    """Return a body that a function in C describes, as terrain.
+
+    Parameters
+    ----------
+    gap : C function
+        Of type `spring_gap_fn`: a `numba.cfunc`, a `scipy.LowLevelCallable`, or a function of ctypes or cffi.
+    thickness : float
+        Least thickness of the body [m] > 0.
+    gap_data : ndarray, optional
+        The function receives a pointer to the first element of this array as `user`. Do not change it during a step.
+    bound : float
+        Radius of a sphere about `at` that contains the body, without its radius [m]; 0: none, as for terrain.
+    at, axis, radius
+        See `Collider`.
+    **options
+        As of `plane`.
+    """
+    return Collider("custom", at, axis=axis, radius=radius, gap=gap, gap_data=gap_data, thickness=thickness, bound=bound,
+                    **options)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Forces of scenes: functions in Python, and functions in C of numba, SciPy, ctypes and cffi."""
+"""Functions that scenes call: forces in Python, and functions in C of numba, SciPy, ctypes and cffi."""
 from __future__ import annotations
 
 import ctypes
@@ -39,6 +39,9 @@ class CFunc(Protocol):
 
 #: A force in Python, or a C function of scene.h: numba.cfunc, scipy.LowLevelCallable, or a function of ctypes or cffi.
 AnyForce = Union[Force, LowLevelCallable, CFunc]
+
+#: A C function of scene.h. Functions of ctypes and cffi are callable.
+InC = Union[LowLevelCallable, CFunc, Callable[..., int]]
 
 
 class PythonForce:
@@ -143,39 +146,51 @@ def _function_in_c(force: Any) -> tuple[int, int, str | None] | None:
     return None
 
 
-def _is_force(signature: str, number: str) -> bool:
-    """Return whether C functions with this signature are forces of scenes."""
-    result, _, rest = re.sub(r"\bconst\b|\s", "", signature).partition("(")
-    arguments = rest.rstrip(")").split(",")
-    if len(arguments) != 6:
-        return False
-    user, t, particles, *arrays = arguments
-    count = particles.replace("unsigned", "u").removesuffix("_t")
-    counts = count in ("size", "uintptr") or (
-        count.startswith("u") and ctypes.sizeof(getattr(ctypes, f"c_{count}", ctypes.c_byte)) == ctypes.sizeof(ctypes.c_size_t))
-    return result == "void" and user.endswith("*") and t == "double" and counts and arrays == [f"{number}**"] * 3
+def _is_force(number: str) -> Callable[[str, list[str]], bool]:
+    """Return whether C functions with a signature are forces of scenes, as a function of result and arguments."""
+    def fits(result: str, given: list[str]) -> bool:
+        if len(given) != 6:
+            return False
+        user, t, particles, *arrays = given
+        count = particles.replace("unsigned", "u").removesuffix("_t")
+        counts = count in ("size", "uintptr") or (count.startswith("u") and ctypes.sizeof(
+            getattr(ctypes, f"c_{count}", ctypes.c_byte)) == ctypes.sizeof(ctypes.c_size_t))
+        return result == "void" and user.endswith("*") and t == "double" and counts and arrays == [f"{number}**"] * 3
+
+    return fits
+
+
+def function_in_c(field: str, function: object, data: NDArray[Any] | None, wanted: str,
+                  fits: Callable[[str, list[str]], bool]) -> tuple[int, int] | None:
+    """Return address and user pointer of a C function whose signature fits; None: it is not a function in C."""
+    found = _function_in_c(function)
+    if found is None:
+        return None
+    address, user, signature = found
+    if signature is not None:
+        result, _, rest = re.sub(r"\bconst\b|\s", "", signature).partition("(")
+        if not fits(result, rest.rstrip(")").split(",")):
+            raise TypeError(f"{field}: its signature is {signature}, not {wanted}")
+    if address == 0:
+        raise TypeError(f"{field}: a null pointer")
+    if data is not None:
+        if not isinstance(data, np.ndarray) or not data.flags.c_contiguous:
+            raise TypeError(f"{field}_data: not a contiguous array of NumPy")
+        if user:
+            raise TypeError(f"{field}_data: the LowLevelCallable has user data")
+        user = data.ctypes.data
+    return address, user
 
 
 def called_force(force: AnyForce, data: NDArray[Any] | None, scene: Any) -> PythonForce | CForce:
     """Return a force as C calls it."""
-    found = _function_in_c(force)
-    if found is None:
-        if not callable(force):
-            raise TypeError(f"force: a {type(force).__name__}, neither a function in Python nor one in C")
-        if data is not None:
-            raise TypeError("force_data: only for forces in C; a function in Python uses its own variables")
-        return PythonForce(force, scene)
-    address, user, signature = found
     number = "double" if scene.dtype == np.float64 else "float"
     wanted = f"void (void *, double, size_t, {number} **, {number} **, {number} **)"
-    if signature is not None and not _is_force(signature, number):
-        raise TypeError(f"force: its signature is {signature}, not {wanted}")
-    if address == 0:
-        raise TypeError("force: a null pointer")
+    found = function_in_c("force", force, data, wanted, _is_force(number))
+    if found is not None:
+        return CForce(*found, scene.dtype, (force, data))
+    if not callable(force):
+        raise TypeError(f"force: a {type(force).__name__}, neither a function in Python nor one in C")
     if data is not None:
-        if not isinstance(data, np.ndarray) or not data.flags.c_contiguous:
-            raise TypeError("force_data: not a contiguous array of NumPy")
-        if user:
-            raise TypeError("force_data: the LowLevelCallable has user data")
-        user = data.ctypes.data
-    return CForce(address, user, scene.dtype, (force, data))
+        raise TypeError("force_data: only for forces in C; a function in Python uses its own variables")
+    return PythonForce(force, scene)

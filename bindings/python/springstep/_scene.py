@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, NoReturn, TypedDict, TypeVar, overload
 
 import numpy as np
@@ -56,7 +57,9 @@ class SceneOptions(TypedDict, total=False):
     held_forces: bool
     max_speed: float
     colliders: int
-    particle_radius: float
+    particle_radius: ArrayLike
+    particle_friction: ArrayLike | None
+    particle_mask: ArrayLike | None
 
 
 class GridOptions(SceneOptions, total=False):
@@ -69,11 +72,12 @@ class GridOptions(SceneOptions, total=False):
 class Snapshot:
     """The state of a scene at a time, including its force, for `Scene.restore`."""
 
-    __slots__ = ("_scene", "_memory", "_called", "_pinned", "_time")
+    __slots__ = ("_scene", "_memory", "_called", "_bodies", "_pinned", "_time")
 
-    def __init__(self, scene: Scene[Any], memory: bytes, called: PythonForce | CForce | None, pinned: NDArray[np.bool_],
-                 time: float) -> None:
-        self._scene, self._memory, self._called, self._pinned, self._time = scene, memory, called, pinned, time
+    def __init__(self, scene: Scene[Any], time: float) -> None:
+        self._scene, self._time = scene, time
+        self._memory, self._called, self._bodies = scene._memory.tobytes(), scene._called, scene._bodies
+        self._pinned = scene._pinned.copy()
 
     def __len__(self) -> int:
         """Size of the snapshot [bytes]."""
@@ -136,8 +140,13 @@ class Scene(Generic[F]):
         [m/s] A step after which a free particle is faster along an axis fails; 0: no limit.
     colliders : int
         Maximum number of colliders, at most 32, see `set_colliders`; for two or three axes.
-    particle_radius : float
-        [m] >= 0, of every particle, for contacts.
+    particle_radius : array_like
+        [m] >= 0, of all or for each particle, for contacts.
+    particle_friction : array_like, optional
+        >= 0, for each particle: a factor of the friction of colliders. By default 1.
+    particle_mask : array_like, optional
+        For each particle an integer. It collides with colliders whose `mask` has a bit in common, and with none if it is 0.
+        By default all bits.
 
     Raises
     ------
@@ -147,7 +156,7 @@ class Scene(Generic[F]):
     """
 
     __slots__ = ("_dtype", "_prefix", "_particles", "_axes", "_links", "_called", "_unseen_velocity", "_pinned", "_undo",
-                 "_definition", "_guard", "_memory", "_lent", "_pointer", "__weakref__")
+                 "_definition", "_guard", "_memory", "_lent", "_pointer", "_bodies", "__weakref__")
 
     @overload
     def __init__(self: Scene[np.float64], position: ArrayLike, links: ArrayLike = ..., *misplaced: NoReturn,
@@ -167,7 +176,8 @@ class Scene(Generic[F]):
                  drag: float = 0.0, force: AnyForce | None = None, force_data: NDArray[Any] | None = None,
                  force_ignores_velocity: bool = False, methods: Iterable[MethodName] | None = None, editable: bool = False,
                  undo: bool = True, dtype: DTypeLike = np.float64, tension_only: bool = False, held_forces: bool = False,
-                 max_speed: float = 0.0, colliders: int = 0, particle_radius: float = 0.0) -> None:
+                 max_speed: float = 0.0, colliders: int = 0, particle_radius: ArrayLike = 0.0,
+                 particle_friction: ArrayLike | None = None, particle_mask: ArrayLike | None = None) -> None:
         if misplaced or isinstance(position, Grid):
             raise TypeError("Scene(position, links, ...): all other arguments have names; for a grid use Scene.from_grid()")
         self._dtype: np.dtype[Any] = np.dtype(dtype)
@@ -184,6 +194,7 @@ class Scene(Generic[F]):
         self._links = len(link)
         names = names_of("methods", methods or ())
         self._called: PythonForce | CForce | None = None
+        self._bodies: list[Collider] = []  # all colliders if one is custom, to keep functions and their data alive
         self._unseen_velocity: NDArray[Any] | None = None
         if force_ignores_velocity:
             self._unseen_velocity = np.zeros((self._axes, self._particles), self._dtype)
@@ -199,7 +210,7 @@ class Scene(Generic[F]):
         given: dict[str, NDArray[Any]] = {"position": positions, "link": link, "weighted_link": weighted}
         definition = ffi.new(f"{self._prefix}_def *", {
             "axes": self._axes, "particles": self._particles, "links": self._links, "weighted_links": len(weighted), "drag": drag, "max_speed": max_speed,
-            "colliders": min(natural("colliders", colliders), 2**32 - 1), "particle_radius": particle_radius,
+            "colliders": min(natural("colliders", colliders), 2**32 - 1),
             "gravity": self._vector("gravity", gravity) if gravity is not None else [],
         })
         for flag, wanted in (("EDITABLE", editable), ("NO_UNDO", not undo),
@@ -220,6 +231,14 @@ class Scene(Generic[F]):
         if pinned is not None:
             given["pinned"] = self._flags(pinned, self._particles)
             self._pinned[:] = given["pinned"]
+        if np.ndim(particle_radius) == 0:
+            definition.particle_radius = particle_radius
+        else:
+            given["radius"] = self._numbers("particle_radius", particle_radius, (self._particles,))
+        if particle_friction is not None:
+            given["friction"] = self._numbers("particle_friction", particle_friction, (self._particles,))
+        if particle_mask is not None:
+            given["mask"] = self._masks(particle_mask)
         lent = {field: ffi.from_buffer(array) for field, array in given.items()}
         for field, buffer in lent.items():
             setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), buffer))
@@ -228,7 +247,8 @@ class Scene(Generic[F]):
             "links": link, "weighted_links": weighted.copy(), "mass": np.array(mass), "pinned": self._pinned.copy(), "drag": drag,
             "force_ignores_velocity": force_ignores_velocity, "methods": names, "editable": editable, "undo": undo,
             "dtype": self._dtype, "tension_only": tension_only, "held_forces": held_forces, "max_speed": max_speed,
-            "colliders": colliders, "particle_radius": particle_radius,
+            "colliders": colliders, "particle_radius": np.array(particle_radius),
+            **{f"particle_{field}": given[field].copy() for field in ("friction", "mask") if field in given},
         }
         if force is not None:  # for what depends on whether there is one
             definition.force = lib.springstep_force if self._dtype == np.float64 else lib.springstep_forcef
@@ -302,12 +322,23 @@ class Scene(Generic[F]):
             raise ValueError(f"pinned: its shape is {flags.shape}, not {'(count,)' if count is None else (count,)}")
         return flags
 
+    def _masks(self, values: ArrayLike) -> NDArray[np.uint32]:
+        array = np.asarray(values)
+        if array.shape != (self._particles,):
+            raise ValueError(f"particle_mask: its shape is {array.shape}, not {(self._particles,)}")
+        with np.errstate(invalid="ignore"):
+            masks = array.astype(np.uint32)
+        if (wrong := np.flatnonzero(masks != array)).size:
+            invalid("particle_mask", array[wrong[0]].item(), int(wrong[0]), "not an integer from 0 to 2^32 - 1")
+        return masks
+
     def _refuse(self, status: int, field: str | None, index: int, definition: Any, given: dict[str, NDArray[Any]],
                 names: tuple[str, ...]) -> NoReturn:
         """Raise the exception for an invalid definition."""
         name, _, part = (field or "").partition(".")
         if name in given and index < len(given[name]):
             value = given[name][index]
+            field = f"particle_{name}" if name in ("radius", "friction") else field
             fail(status, field, (value[part] if part else value).tolist(), index)
         if name == "methods":
             fail(status, field, names)
@@ -645,11 +676,11 @@ class Scene(Generic[F]):
             fail(status, "matrix", array.tolist())
 
     def _save(self) -> Snapshot:
-        return Snapshot(self, self._memory.tobytes(), self._called, self._pinned.copy(), self._c("time")(self._pointer))
+        return Snapshot(self, self._c("time")(self._pointer))
 
     def _load(self, snapshot: Snapshot) -> None:
         self._memory[:] = np.frombuffer(snapshot._memory, np.uint8)
-        self._called = snapshot._called
+        self._called, self._bodies = snapshot._called, snapshot._bodies
         self._pinned[:] = snapshot._pinned
 
     def snapshot(self) -> Snapshot:
@@ -688,7 +719,8 @@ class Scene(Generic[F]):
 
         The run then continues bit-identically, if the scene of the state had the same definition. Positions, velocities and
         gravity of the definition need not be the same. Masses, pinned particles and coefficients of links, unless the scene
-        is editable, drag, max_speed, particle_radius and the force must be the same, and cannot be checked.
+        is editable, drag, max_speed, particle_radius and the force must be the same, and cannot be checked. Set custom bodies
+        before, at the same places in the list of colliders: a state does not have their functions.
 
         Parameters
         ----------
@@ -724,7 +756,7 @@ class Scene(Generic[F]):
     def __reduce__(self) -> tuple[Any, ...]:
         """A copy has a state and memory of its own, and the same force."""
         force = (None, None) if self._called is None else self._called.given
-        return _copied, (type(self), (self._particles, self._axes), self._definition, force, self.save())
+        return _copied, (type(self), (self._particles, self._axes), self._definition, force, self.save(), self._bodies)
 
     # --- changes
 
@@ -752,7 +784,14 @@ class Scene(Generic[F]):
             if not isinstance(collider, Collider):
                 raise TypeError(f"colliders[{place}]: a {type(collider).__name__}, not a Collider")
             collider._fill(array[place], self._axes, place)
-        if status := self._ask("set_colliders", array, len(given)):
+
+        def change() -> int:
+            status: int = self._c("set_colliders")(self._pointer, array, len(given))
+            if not status:
+                self._bodies = [replace(c) for c in given] if any(c.shape == "custom" for c in given) else []
+            return status
+
+        if status := self._guard.short(change):
             if status == lib.SPRING_EINVAL:
                 self._refuse_colliders(array, given)
             fail(status, "colliders", len(given))
@@ -1036,8 +1075,10 @@ def _pins_in(state: bytes | bytearray | memoryview, held: bool) -> NDArray[np.bo
 
 
 def _copied(cls: type[Scene[Any]], shape: tuple[int, int], definition: dict[str, Any], force: tuple[Any, Any],
-            state: bytes) -> Scene[Any]:
+            state: bytes, bodies: list[Collider]) -> Scene[Any]:
     """Return a copy of a scene."""
     scene = cls(np.zeros(shape), force=force[0], force_data=force[1], **definition)
+    if bodies:  # a state does not have their functions
+        scene.set_colliders(bodies)
     scene.load(state)
     return scene

@@ -146,6 +146,12 @@ def test_colliders():
     assert run("Colliders")["scene"].touching().tolist() == [1]
 
 
+def test_custom_bodies():
+    pytest.importorskip("numba")
+    (x, _, z), (_, _, far) = run("Custom bodies")["stones"].position()
+    assert abs(z - 0.2 * np.sin(2 * x)) < 1e-9 and z < -0.1 and far < -9
+
+
 def test_snapshots():
     names = run("Snapshots")
     assert names["scene"].time == 100 * names["dt"] and len(names["scene"]) == 625

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Particles joined by springs."""
 import copy
+import ctypes
+import gc
 import math
 import multiprocessing
 import pickle
@@ -653,7 +655,7 @@ def test_every_field_of_a_collider_reaches_c(axes):
     """C tests what they do. Each field has numbers of its own."""
     c = ffi.new("spring_collider *")
     given = springstep.Collider("capsule", *([10 * field + axis for axis in range(axes)] for field in (1, 2)),
-                                radius=0.3, friction=0.4, restitution=0.5, spin=7.0 if axes == 2 else [5, 6, 7])
+                                radius=0.3, friction=0.4, restitution=0.5, mask=2**32 - 2, spin=7.0 if axes == 2 else [5, 6, 7])
     given.half, given.velocity, given.velocity_to = ([10 * field + axis for axis in range(axes)] for field in (3, 4, 5))
     given.acceleration, given.surface = ([10 * field + axis for axis in range(axes)] for field in (6, 7))
     given.spin_acceleration = 8.0 if axes == 2 else [8, 9, 10]
@@ -664,7 +666,105 @@ def test_every_field_of_a_collider_reaches_c(axes):
     assert [list(row) for row in c.axis] == [[*row, 0][:3] for row in given.axis]
     assert list(c.spin) == ([0, 0, 7] if axes == 2 else [5, 6, 7]) and c.shape == lib.SPRING_CAPSULE
     assert list(c.spin_acceleration) == ([0, 0, 8] if axes == 2 else [8, 9, 10])
-    assert (c.radius, c.friction, c.restitution) == (0.3, 0.4, 0.5)
+    assert (c.radius, c.friction, c.restitution, c.mask) == (0.3, 0.4, 0.5, 2**32 - 2)
+
+
+@FLOATS
+def test_values_of_particles(dtype):
+    """Particles of their own radius on planes of their own. Friction holds two of them on a slope; masks are kept by copies."""
+    radius, friction, mask = [0.01, 0.02, 0.03, 0, 0.05], [1, 0, 1, 1, 0.0], [1, 1, 2, 2**31, 0]
+    scene = drop(springstep.plane([0, 0, 0], [0, 0, 1], friction=0.5, mask=1),
+                 springstep.plane([0, 0, -1], [0, 0, 1], friction=0.5, mask=2**31 + 2), dtype=dtype, particle_radius=radius,
+                 particle_friction=friction, particle_mask=mask)
+    scene.set_gravity([0, 2, -9.81])
+    scene.advance(1 / 240, 240)
+    assert scene.touching().tolist() == [1, 1, 2, 2, 0]
+    wanted = np.array([0.01, 0.02, -0.97, -1])
+    assert abs(scene.position()[:4, 2] - wanted).max() <= 8 * np.finfo(dtype).eps and scene.position()[4, 2] < -4
+    assert (scene.velocity()[:4, 1] > 0).tolist() == [False, True, False, False]
+    again = pickle.loads(pickle.dumps(scene))
+    for copied in (scene, again):
+        copied.advance(1 / 240, 10)
+    assert fnv(again) == fnv(scene)
+
+
+@pytest.mark.parametrize("field, values, named", [
+    ("particle_radius", [0, 0, -1, 0, 0], r"particle_radius\[2\] = -1"),
+    ("particle_friction", [1, math.inf, 1, 1, 1], r"particle_friction\[1\] = inf"),
+    ("particle_mask", [1, 2, 3, -1, 0], r"particle_mask\[3\] = -1"),
+    ("particle_mask", [0.5, 1, 1, 1, 1], r"particle_mask\[0\] = 0.5"),
+    ("particle_mask", [1], "particle_mask: its shape"),
+    ("particle_radius", [1], "particle_radius: its shape"),
+])
+def test_bad_values_of_particles_are_named(field, values, named):
+    with pytest.raises(ValueError, match=f"^{named}"):
+        drop(**{field: values})
+
+
+ARGUMENTS = [ctypes.c_void_p, *[ctypes.POINTER(ctypes.c_double)] * 3]
+
+
+def gap_in_ctypes():
+    def gap_of_ground(user, point, gap, normal):
+        gap[0] = point[2] - ctypes.cast(user, ARGUMENTS[1])[0]
+        normal[0], normal[1], normal[2] = 0, 0, 1
+        return 1
+
+    return ctypes.CFUNCTYPE(ctypes.c_uint32, *ARGUMENTS)(gap_of_ground)
+
+
+def gap_in_numba():
+    numba = pytest.importorskip("numba")
+
+    @numba.cfunc("uint32(voidptr, CPointer(double), CPointer(double), CPointer(double))")
+    def gap_of_ground(user, point, gap, normal):
+        gap[0] = point[2] - numba.carray(user, 1, numba.float64)[0]
+        normal[0], normal[1], normal[2] = 0, 0, 1
+        return 1
+
+    return gap_of_ground
+
+
+def gap_in_cffi():
+    def gap_of_ground(user, point, gap, normal):
+        gap[0] = point[2] - ffi.cast("double *", user)[0]
+        normal[0] = [0, 0, 1]
+        return 1
+
+    return ffi.callback("spring_gap_fn", gap_of_ground)
+
+
+@FLOATS
+@pytest.mark.parametrize("made", [gap_in_ctypes, gap_in_numba, gap_in_cffi])
+def test_custom_bodies(made, dtype):
+    """Ground as a custom body. A snapshot and a copy have its function."""
+    ground = drop(springstep.plane([0, 0, 0.25], [0, 0, 1], friction=0.5), dtype=dtype, velocity=np.full((5, 3), 0.1))
+    scene = drop(springstep.custom(made(), 1, gap_data=np.array([0.25]), friction=0.5), dtype=dtype, velocity=np.full((5, 3), 0.1))
+    before = scene.snapshot()
+    scene.set_colliders([])
+    gc.collect()
+    scene.restore(before)
+    again = copy.copy(scene)
+    for each in (ground, scene, again):
+        each.advance(1 / 240, 100)
+    assert abs(scene.position() - ground.position()).max() < 8 * np.finfo(dtype).eps and scene.touching().all()
+    assert fnv(again) == fnv(scene)
+    again.load(scene.save())
+    again.set_colliders([])
+    with pytest.raises(springstep.InvalidError, match="^state"):
+        again.load(scene.save())
+
+
+@pytest.mark.parametrize("gap, data, named", [
+    (None, None, r"colliders\[0\].gap: a NoneType, not a function in C"),
+    (ctypes.CFUNCTYPE(None, *ARGUMENTS)(lambda *_: None), None, r"colliders\[0\].gap: its signature is void .*, not uint32_t \("),
+    (ffi.cast("uint32_t(*)(void *, double *, double *)", 1), None, r"colliders\[0\].gap: its signature is "),
+    (ffi.cast("spring_gap_fn *", 0), None, r"colliders\[0\].gap: a null pointer"),
+    (ffi.cast("spring_gap_fn *", 1), [0.25], r"colliders\[0\].gap_data: not a contiguous array"),
+])
+def test_what_is_no_surface_is_refused(gap, data, named):
+    with pytest.raises(TypeError, match=f"^{named}"):
+        drop(springstep.custom(gap, 1, gap_data=data))
 
 
 def test_impulses_are_those_of_the_weight():
@@ -716,6 +816,10 @@ def test_colliders_are_values():
     ("friction", -0.1, "plane", {}),
     ("friction", math.inf, "plane", {}),
     ("restitution", 1.5, "plane", {}),
+    ("mask", -1, "plane", {}),
+    ("mask", 2**32, "plane", {}),
+    ("thickness", 0.0, "custom", {"gap": ffi.cast("spring_gap_fn *", 1)}),
+    ("bound", -1.0, "custom", {"gap": ffi.cast("spring_gap_fn *", 1), "thickness": 1}),
     ("axis", [[1, 1, 0], [0, 1, 0], [0, 0, 1]], "plane", {}),
     ("axis", [[1, 0, 0], [1, 0, 0], [0, 0, 1]], "box", {}),
     ("shape", "cone", "cone", {}),

@@ -77,7 +77,12 @@ state = ffi.new("spring_state *", [1, 0])
 assert_type(lib.spring_energy(state, ffi.new("spring_params *", [1, 40, 0, 0])), float)
 assert_type(lib.SPRING_OK, int)
 
-if TYPE_CHECKING:  # forces in C
+scene.set_colliders([springstep.plane([0, 0, 0], [0, 0, 1], mask=3, acceleration=[0, 0, 1])])
+assert_type(Scene(grid.position, colliders=1, particle_radius=np.full(25, 0.1), particle_mask=25 * [1]), Scene[np.float64])
+
+if TYPE_CHECKING:  # functions in C
+    springstep.custom(ctypes.CDLL("./ground.so").gap, 0.1, gap_data=np.zeros(3), friction=0.5)
+    springstep.custom(ffi.cast("spring_gap_fn *", 0), 0.1)
     scene.set_force(ctypes.CDLL("./wind.so").wind, np.zeros(3))
     scene.set_force(ctypes.CFUNCTYPE(None, ctypes.c_void_p)())
     scene.set_force(ffi.cast("spring_scene_force_fn *", 0))
@@ -91,5 +96,6 @@ if TYPE_CHECKING:  # each line is an error
     Scene(grid.position, masses=3)  # type: ignore[call-overload]  # pyright: ignore[reportCallIssue]
     spring.x = "1"  # type: ignore[assignment]  # pyright: ignore[reportAttributeAccessIssue]
     spring.stifness = 3  # type: ignore[attr-defined]  # pyright: ignore[reportAttributeAccessIssue]
+    springstep.sphere([0, 0, 0], 1, colour=3)  # type: ignore[call-arg]  # pyright: ignore[reportCallIssue]
     Collider("cone")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     lib.spring_energy(state)  # type: ignore[call-arg, misc]  # pyright: ignore[reportCallIssue]
