@@ -42,7 +42,7 @@ call plots."methods.gp" ARG2 ARG3
 
 width = 520
 height = 390
-key_height(entries) = 24*((entries + 1)/2) + 14 # [px] of a key above the picture, see key.gp, and of a gap below it
+key_height(entries) = 31*((entries + 1)/2) + 6 # [px] of a key above the picture, see key.gp, and of a gap below it
 key_bottom(entries) = 1 - (20.0 + key_height(entries))/height
 if (ARGC > 3) {
     eval "height = int(".ARG4.")"
