@@ -86,7 +86,7 @@ int main(void)
     size_t particles, links, bends = 2 * N, tethers = N, bytes;
     must(spring_grid_size(&sheet, &particles, &links));
     must(spring_grid_fill(&sheet, x[0], pinned, link));
-    must(spring_bend_grid(&sheet, pinned, SPRING_BEND_ROWS, 1e-3, 0, bend, &bends)); /* 1e-3 N m */
+    must(spring_bend_grid(&sheet, pinned, SPRING_BEND_ROWS, 1e-3, 0, bend, &bends)); /* [N m], as paper */
     place_body(0, facing, at);
     for (int i = 0; i < N; i++) /* hangs down behind the body */
         place_pin(i % W, at, facing, x[i]), x[i][1] -= i / W * spacing;

@@ -32,7 +32,7 @@ static spring_status advance_frame(spring_scene *s, spring_clock *clock, double 
     const uint64_t n = spring_clock_tick(clock, frame_time, dt, 64, NULL); /* at most 64 steps in a frame */
     if (n == 0)
         return SPRING_OK;
-    /* The frame is `time` after the time of the scene. The scene moves along with the hand while time is skipped. */
+    /* `time` is from the scene to the frame. For skipped time, the whole scene moves with the hand. */
     const double steps = (double)n * dt, time = steps + clock->pending; /* [s] */
     if (clock->skipped > 0)
         move_along(s, hand, clock->skipped / (clock->skipped + time));
