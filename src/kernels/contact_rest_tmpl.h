@@ -699,7 +699,7 @@ SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
                 k++;
                 continue;
             }
-            picked_particles l;
+            picked_particles l = {.consecutive = false};
             uint32_t complete[lanes];
             pick_next(r, c, &k, &l);
             store_bits(complete, bits_where(step(r, &l, c), 1));
