@@ -2,7 +2,7 @@
 """Bodies that the particles of a scene cannot enter."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
@@ -32,7 +32,7 @@ class ColliderOptions(TypedDict, total=False):
     mask: int
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, repr=False)
 class Collider:
     """A body that particles cannot enter, as in C. `plane`, `sphere`, `capsule`, `box` and `custom` make one.
 
@@ -58,6 +58,11 @@ class Collider:
     gap_data: NDArray[Any] | None = None  #: custom: the function receives a pointer to its first element as `user`
     thickness: float = 0.0  #: [m] custom: least thickness of the body, > 0
     bound: float = 0.0  #: [m] custom: radius of a sphere about `at` that contains the body without its radius; 0: none
+
+    def __repr__(self) -> str:
+        """Return the fields that differ from their defaults."""
+        changed = [field.name for field in fields(self) if repr(getattr(self, field.name)) != repr(field.default)]
+        return f"Collider({', '.join(f'{name}={getattr(self, name)!r}' for name in changed)})"
 
     def _fill(self, c: Any, axes: int, place: int) -> None:
         """Copy all fields to a structure of C, for a scene with so many axes."""
