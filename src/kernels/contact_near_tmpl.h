@@ -102,7 +102,7 @@ SPRING_NOINLINE uint32_t boxes_on_paths(const collider_bounds *c, const path_bou
         size += below > above ? below : above;
     }
     const scalar way = *most = -least_of_lanes(b->minus_way);
-    const scalar margin = (scalar)4.2 * c->growth * way + 64 * SCALAR_EPSILON * (size + way);
+    const scalar margin = (scalar)way_of_box * c->growth * way + 64 * SCALAR_EPSILON * (size + way);
     uint32_t meet = 0;
     for (size_t k = 0; k < c->count; k += lanes) {
         lane_mask apart = {0};

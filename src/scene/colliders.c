@@ -162,7 +162,7 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
     to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
     to->growth = (scalar)b->growth;
-    const double margin = 1.04 * b->growth * (double)largest_radius + rounding;
+    const double margin = reach_of_box * b->growth * (double)largest_radius + rounding;
     for (int a = 0; a < 3; a++) {
         bounds->low[a][k] = (scalar)(b->low[a] - margin);
         bounds->high[a][k] = (scalar)(b->high[a] + margin);

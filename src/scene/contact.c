@@ -319,7 +319,7 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     const bool unbounded = !(angle < 0.5);
     b->growth = unbounded ? 1 : 1 / (1 - angle);
     b->reach = unbounded ? infinite : (radius + stretch + angle * size_of_core(b)) * b->growth;
-    bound_with_box(b, 1.04 * b->reach + 4.2 * b->growth * shift);
+    bound_with_box(b, reach_of_box * b->reach + way_of_box * b->growth * shift);
 }
 
 void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1, uint32_t axes)
@@ -1177,7 +1177,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
-        const double margin = b->growth * (1.04 * p->radius + 4.2 * way) + 4 * slop_of(s, p, b);
+        const double margin = b->growth * (reach_of_box * p->radius + way_of_box * way) + 4 * slop_of(s, p, b);
         bool meets = (b->bits & p->bits) != 0;
         for (int a = 0; a < 3 && meets; a++) {
             const double at = component(p->x0, a);

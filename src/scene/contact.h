@@ -12,6 +12,9 @@
 
 enum { most_colliders = 32 }; /* bits of a mask */
 
+/* Factors of the bounds that kernels/contact_near_tmpl.h uses: of the reach of a collider, and of a displacement. */
+static const double reach_of_box = 1.04, way_of_box = 4.2;
+
 typedef struct vector3 {
     double x, y, z; /* with two axes z is 0 */
 } vector3;
@@ -40,8 +43,9 @@ typedef struct contact_body {
     void *user;
     body_pose start, end;
     /* Bounds on where a particle of radius r is at the start of the step if it can touch the body. */
-    double reach, growth;   /* [m] distance from the core <= reach + growth (r + |d - shift|), d: its displacement */
-    double low[3], high[3]; /* [m] box, to be extended by 1.04 growth r + 4.2 growth |d|; +-INFINITY: not bounded */
+    double reach, growth; /* [m] distance from the core <= reach + growth (r + |d - shift|), d: its displacement */
+    double low[3],
+        high[3]; /* [m] box, to be extended by growth (reach_of_box r + way_of_box |d|); +-INFINITY: not bounded */
 } contact_body;
 
 /* What the contacts of a step have in common. */

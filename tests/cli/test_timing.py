@@ -79,9 +79,10 @@ def test_the_cape(tmp_path):
         assert 0 < float(many['column_stretch']) < float(few['column_stretch']) < 1
     for row in rows:
         assert float(row['column_stretch']) < float(row['link_stretch'])
-        # XPBD presses particles into both legs at once. Leapfrog's are outside, up to the motion of a body that is not uniform.
-        deepest = 0.001 if row['solver'] == 'leapfrog' else 0.03
-        assert row['effort'] == 'no-figure' or float(row['depth_m']) < deepest, 'half the radius of a thin capsule is 0.03 m'
+        # Between the legs, XPBD moves a particle out of one leg into the other, by 1 cm: a particle has 2 cm, the gap 1 cm. Leapfrog's
+        # are outside, up to the motion of a body that is not uniform.
+        deepest = 0.001 if row['solver'] == 'leapfrog' else 0.012
+        assert row['effort'] == 'no-figure' or float(row['depth_m']) < deepest, row
         assert float(row['time_us']) > 0 and float(row['kinetic_J']) > 1
         assert float(row['jitter_mps']) < 0.05, 'at rest after ten seconds'
     equal = parse(path.read_text())
