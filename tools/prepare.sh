@@ -98,7 +98,7 @@ own_build() {
     [[ -e $build || -L $build ]] || return 0
     [[ -d $build && -w $build && -x $build ]] || return
     if [[ ! -e $build/meson-info/meson-info.json ]]; then
-        [[ -z $(find "$build" -mindepth 1 -maxdepth 1 ! -name 'meson-*' ! -name live ! -name docs ! -name '.*') ]]
+        [[ -z $(find "$build" -mindepth 1 -maxdepth 1 ! -name 'meson-*' ! -name live ! -name 'docs*' ! -name '.*') ]]
         return
     fi
     command -v python3 >/dev/null || return 0 # Meson cannot run either, and fails with a message
