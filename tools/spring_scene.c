@@ -386,11 +386,14 @@ static state read_state(void)
 
 static void load_state(spring_scene *scene, const state *y)
 {
-    if (spring_scene_load(scene, y->bytes, y->size) != SPRING_OK)
+    const spring_status status = spring_scene_load(scene, y->bytes, y->size);
+    if (status == SPRING_EMISMATCH)
         cli_fail(CLI_USAGE,
-                 "--load: \"%s\" is damaged, or a state of another scene; all options of the scene, the method and "
-                 "the disturbances should be those of the run that saved it",
+                 "--load: \"%s\" is a state of another scene; all options of the scene, the method and the "
+                 "disturbances should be those of the run that saved it",
                  load);
+    if (status != SPRING_OK)
+        cli_fail(CLI_USAGE, "--load: \"%s\" is damaged", load);
 }
 
 static void save_state(const spring_scene *scene, cli_table *file)

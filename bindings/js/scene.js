@@ -22,9 +22,10 @@ const disabled = 7;
 const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
+const mismatch = 14;
 const stepFailures = {
     [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
-    [unstable]: ["a particle would be faster than maxSpeed", "SPRING_EUNSTABLE"],
+    [unstable]: ["a particle would be faster than maxSpeed, or not finite", "SPRING_EUNSTABLE"],
 };
 
 const lost = new FinalizationRegistry((pointer) => library().scene_free(pointer));
@@ -277,7 +278,7 @@ export class Scene {
             const pointer = take(state.length);
             memory.uint8(pointer, state.length).set(state);
             const status = this.#call("spring_scene_load", this.#scene, pointer, state.length);
-            const what = "an undamaged state of a scene with this definition";
+            const what = status === mismatch ? "the state of a scene with this definition" : "an undamaged state";
             check(status === 0, "state", what, `${state.length} bytes`, RangeError);
         });
         this.#frames()[0].fill(0);

@@ -809,8 +809,9 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  *
  * @param[in] in     a saved state, at any address
  * @param[in] bytes  its size
- * @return SPRING_OK; SPRING_EINVAL: NULL, or the state is truncated, damaged, of another scene, or of a later version of
- *         the format. Nothing is changed then, also with SPRING_SCENE_NO_UNDO
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or the state is truncated or damaged; SPRING_EMISMATCH: it is undamaged, but
+ *         of a scene with another definition, or of another version of the format. Unless it returns SPRING_OK, nothing
+ *         is changed, also with SPRING_SCENE_NO_UNDO
  */
 SPRING_API spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes);
 

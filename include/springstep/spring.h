@@ -95,7 +95,9 @@ typedef enum spring_status {
     /* returned for scenes: */
     SPRING_EUNSTABLE, /**< a particle would become faster than the max_speed of its scene, or not finite */
     /* returned for batches: */
-    SPRING_EPARTIAL /**< some springs of a batch failed and kept their state, and all others advanced */
+    SPRING_EPARTIAL, /**< some springs of a batch failed and kept their state, and all others advanced */
+    /* returned by spring_scene_load(): */
+    SPRING_EMISMATCH /**< the state is undamaged, but of a scene with another definition, or of another format */
 } spring_status;
 
 /** @} */

@@ -50,13 +50,18 @@ static uint64_t count_damped(const spring_scene *s)
     return count;
 }
 
+static uint64_t state_magic(void)
+{
+    return word_at((const uint8_t *)"SPRSTATE");
+}
+
 /* The header without the number of bytes. */
 static state_header header_of(const spring_scene *s)
 {
     const scene_layout *const l = &s->layout;
     const uint32_t *const touched = scene_read(s, touched_in(s->buffer));
     state_header h = {
-        .magic = word_at((const uint8_t *)"SPRSTATE"),
+        .magic = state_magic(),
         .version = format_version,
         .precision = sizeof(scalar),
         .axes = l->axes,
@@ -83,18 +88,23 @@ static state_header header_of(const spring_scene *s)
     return h;
 }
 
+/* Whether the state is of a scene with this definition, as far as states show. */
+static bool header_matches(const spring_scene *s, const state_header *h)
+{
+    const state_header own = header_of(s);
+    return memcmp(h, &own, offsetof(state_header, bytes)) == 0 && (scene_is_editable(s) || h->damped == own.damped);
+}
+
 static bool header_valid(const spring_scene *s, const state_header *h)
 {
     const scene_layout *const l = &s->layout;
-    const state_header own = header_of(s);
     for (uint32_t a = 0; a < l->axes; a++)
         if (!scene_fits(h->gravity[a]))
             return false;
     const bool predicts = l->offset[ARRAY_FORCE_1] != l->offset[ARRAY_FORCE_0];
-    return memcmp(h, &own, offsetof(state_header, bytes)) == 0 && h->kept <= (predicts ? PREDICTED_FORCE : FORCE) &&
-           (scene_is_editable(s) ? h->damped <= l->links : h->damped == own.damped) && h->bodies <= l->colliders &&
-           h->touching <= (h->bodies > 0 ? l->particles : 0) && scene_fits(h->dt) && h->colliders_from <= h->steps &&
-           spring_finite(h->t0 + (double)h->steps * h->dt) &&
+    return h->kept <= (predicts ? PREDICTED_FORCE : FORCE) && (!scene_is_editable(s) || h->damped <= l->links) &&
+           h->bodies <= l->colliders && h->touching <= (h->bodies > 0 ? l->particles : 0) && scene_fits(h->dt) &&
+           h->colliders_from <= h->steps && spring_finite(h->t0 + (double)h->steps * h->dt) &&
            spring_finite(h->colliders_base + (double)(h->steps - h->colliders_from) * h->dt);
 }
 
@@ -569,14 +579,19 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
 {
     state_header h;
     section list[most_sections];
-    if (s == NULL || in == NULL || bytes < sizeof h)
+    if (s == NULL || in == NULL || bytes < sizeof h + word_bytes || bytes % word_bytes != 0)
         return SPRING_EINVAL;
     copy_numbers(&h, in, header_words, word_bytes);
-    if (h.bytes != bytes || !header_valid(s, &h))
+    uint8_t *const state = (uint8_t *)in, *at = state + sizeof h; /* which is not written to */
+    if (h.magic != state_magic() || h.bytes != bytes ||
+        check_value(in, bytes - word_bytes) != word_at(state + bytes - word_bytes))
+        return SPRING_EINVAL;
+    if (!header_matches(s, &h))
+        return SPRING_EMISMATCH;
+    if (!header_valid(s, &h))
         return SPRING_EINVAL;
     list_sections(s, &h, list);
-    uint8_t *const state = (uint8_t *)in, *at = state + sizeof h; /* which is not written to */
-    if (state_bytes(list) != bytes || check_value(in, bytes - word_bytes) != word_at(state + bytes - word_bytes))
+    if (state_bytes(list) != bytes)
         return SPRING_EINVAL;
     arriving coming = {.s = s, .header = &h};
     for (int i = 0; i < most_sections; at += section_bytes(&list[i++]))

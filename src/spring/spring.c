@@ -196,9 +196,11 @@ const char *spring_status_string(spring_status s)
     case SPRING_EBITS:
         return "results are not bit-identical to the expected ones";
     case SPRING_EUNSTABLE:
-        return "a particle is faster than max_speed";
+        return "a particle is faster than max_speed, or a result is not finite";
     case SPRING_EPARTIAL:
         return "some springs of the batch failed, and all others advanced";
+    case SPRING_EMISMATCH:
+        return "the state of a scene with another definition";
     }
     return "unknown status";
 }

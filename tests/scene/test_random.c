@@ -784,8 +784,10 @@ static void load_word(spring_scene *s, const saved *y, size_t i, uint64_t word, 
 static void check_other_words(const block *b, const saved *y)
 {
     enum {
-        first_free = 13,
-        kept_force = 13,
+        magic = 0,
+        size = 12,
+        first_free,
+        kept_force = first_free,
         colliders = 15,
         touching,
         t0,
@@ -801,8 +803,8 @@ static void check_other_words(const block *b, const saved *y)
     const size_t number = sizeof(scalar), quantity = (l->axes * l->particles * number + 7) / 8;
     const uint64_t nothing = UINT64_C(0x7ff8000000000000) | UINT64_C(0x7fc00000); /* NaN, also as two floats */
     for (size_t i = 0; i < first_free; i++)
-        load_word(b->s, y, i, state_word(y->bytes, i) + 1, SPRING_EINVAL);
-    load_word(b->s, y, 2, 12 - number, SPRING_EINVAL); /* the other precision */
+        load_word(b->s, y, i, state_word(y->bytes, i) + 1, i == magic || i == size ? SPRING_EINVAL : SPRING_EMISMATCH);
+    load_word(b->s, y, 2, 12 - number, SPRING_EMISMATCH); /* the other precision */
     load_word(b->s, y, kept_force, PREDICTED_FORCE + 1, SPRING_EINVAL);
     load_word(b->s, y, colliders, l->colliders + 1, SPRING_EINVAL);
     load_word(b->s, y, touching, state_word(y->bytes, touching) + 1, SPRING_EINVAL);
@@ -914,12 +916,13 @@ static void saved_states(void)
         const block b = block_of(&m.def);
         const saved y = save(b.s);
         const bool same = i > 0 && y.size == before.size && memcmp(y.bytes + 16, before.bytes + 16, 80) == 0;
-        CHECK(i == 0 || same || spring_scene_load(b.s, before.bytes, before.size) == SPRING_EINVAL, "of another scene");
+        CHECK(i == 0 || same || spring_scene_load(b.s, before.bytes, before.size) == SPRING_EMISMATCH,
+              "of another scene");
         if (m.def.links > 0)
             m.link[0].flags ^= SPRING_LINK_TENSION_ONLY;
         if (m.def.links > 0 && spring_scene_check(&m.def, NULL, NULL) == SPRING_OK) {
             const block flagged = block_of(&m.def);
-            CHECK(spring_scene_load(flagged.s, y.bytes, y.size) == SPRING_EINVAL, "other flags of a link");
+            CHECK(spring_scene_load(flagged.s, y.bytes, y.size) == SPRING_EMISMATCH, "other flags of a link");
             free(flagged.room);
         }
         free(before.room);

@@ -730,7 +730,7 @@ class Scene(Generic[F]):
         Raises
         ------
         InvalidError
-            If the state is damaged, or not that of such a scene. The scene is unchanged.
+            If the state is damaged, or that of a scene with another definition. The scene is unchanged.
         """
         def load() -> int:
             buffer = ffi.from_buffer(state)
@@ -739,8 +739,11 @@ class Scene(Generic[F]):
                 self._pinned[:] = _pins_in(state, self._definition["held_forces"])
             return status
 
-        if self._guard.short(load):
-            invalid("state", f"{len(state)} bytes", reason="damaged, or not the state of a scene with this definition")
+        status = self._guard.short(load)
+        if status:
+            of_another = status == lib.SPRING_EMISMATCH
+            invalid("state", f"{len(state)} bytes",
+                    reason="the state of a scene with another definition" if of_another else "damaged or truncated")
 
     def set_time(self, t: float) -> None:
         """Set the time. Colliders stay where they are, and nothing else changes.
