@@ -408,8 +408,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
- *  - up to 0.9 if all links have a damping ratio of at least 0.02, or for soft bodies and sheets with shear springs with
- *    drag/mass of at least 0.1/s; up to 0.5 for ropes with such drag;
+ *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02, or for soft bodies
+ *    and sheets with shear springs with drag/mass of at least 0.1/s; up to 0.5 for ropes with such drag;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
  * `spring-work --problem steps` measures what longer steps cost. Use a smaller step if a link rotates faster than it
  * would oscillate. The forces of the callback are not considered.

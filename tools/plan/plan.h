@@ -38,6 +38,10 @@ uint64_t plan_scene_frames(const plan_scene *s);
     heavy link damping" in scene.h. *reach: dt G. */
 unsigned plan_damping_evaluations(const preset *scene, double dt, double *reach);
 
+/** The largest fraction of the stable step that leapfrog may take in a scene of this kind, by the rules of scene.h.
+    duration: [s] NaN: not known. *what: the kind. */
+double plan_fraction(const preset *scene, double duration, const char **what);
+
 /* The precision of a scene. */
 typedef enum plan_precision { PLAN_DOUBLE, PLAN_FLOAT, plan_precisions } plan_precision;
 
@@ -53,7 +57,7 @@ typedef enum plan_limit { PLAN_SCENE, PLAN_LINK, plan_limits } plan_limit;
 /* The steps of a scene by leapfrog. */
 typedef struct plan_steps {
     double stable_step; /* [s] */
-    double substeps;    /* steps per frame, each at most half the stable step */
+    double substeps;    /* steps per frame: the fewest that plan_fraction() allows */
     double time;        /* [s] running time of a frame */
 } plan_steps;
 

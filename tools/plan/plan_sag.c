@@ -16,7 +16,7 @@
 #include "plan.h"
 #include "scenes/start.h"
 
-static const double fraction = 0.5;      /* of the stable step, as recommended in scene.h */
+static const double fraction = 0.5;      /* of the stable step, while the scene settles */
 static const double rest_share = 1e-5;   /* largest acceleration of a scene at rest, relative to gravity */
 static const double window = 1e-3;       /* the stretch is smaller than requested by at most this fraction */
 static const double accuracy = 1e-2;     /* of a stretch by an extrapolated height, with a margin */
@@ -269,10 +269,12 @@ static double stable_step(const preset *scene, plan_precision precision)
 static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
     set_links(scene, plan->stiffness, damping);
+    const char *what;
+    const double allowed = plan_fraction(scene, NAN, &what);
     for (int p = 0; p < plan_precisions; p++) {
         plan_steps *s = &plan->steps[p];
         s->stable_step = stable_step(scene, (plan_precision)p);
-        s->substeps = ceil(plan_frame / (fraction * s->stable_step));
+        s->substeps = ceil(plan_frame / (allowed * s->stable_step));
         const double work = s->substeps * (double)(scene->def.particles + scene->def.links);
         const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * s->substeps;
         s->time =

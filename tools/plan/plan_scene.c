@@ -262,3 +262,26 @@ unsigned plan_damping_evaluations(const preset *scene, double dt, double *reach)
         return 0;
     return saturated <= 0.6 ? 1 : (unsigned)fmax(3, ceil(sqrt(2.6 * saturated + 1))) - 1;
 }
+
+double plan_fraction(const preset *scene, double duration, const char **what)
+{
+    const double dragged = 0.1; /* [1/s] drag/mass */
+    const double damped = 0.02; /* damping ratio of links */
+    const double lone = 1.5;    /* links per particle of a rope */
+    const double minute = 60;   /* [s] */
+    const spring_scene_def *d = &scene->def;
+    double heaviest = 0, ratio = INFINITY;
+    for (size_t i = 0; i < d->particles; i++)
+        if (!scene->pinned[i])
+            heaviest = fmax(heaviest, d->mass != NULL ? d->mass[i] : d->mass_all > 0 ? d->mass_all : 1);
+    for (size_t i = 0; i < d->links; i++)
+        if (d->link[i].stiffness > 0 && d->link[i].flags == 0)
+            ratio = fmin(ratio, d->link[i].damping / sqrt(2 * d->link[i].stiffness * heaviest));
+    const bool rope = (double)d->links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
+    *what = ratio >= damped     ? "damped links"
+            : drags && !rope    ? "a sheet or a block with drag"
+            : drags             ? "a rope with drag"
+            : duration > minute ? "a long run without damping"
+                                : "smooth motion without damping (0.25 if it is violent or long)";
+    return ratio >= damped || (drags && !rope) ? 0.9 : duration > minute && !drags ? 0.25 : 0.5;
+}

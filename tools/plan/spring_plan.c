@@ -101,8 +101,8 @@ static const cli_program program = {
                "uncertainty and stable_substeps (the fewest whose step is below the stable step; 0: none).\n\n"
                "With --sag: limit (scene or link, whose stretch is S or at most 0.1 % of S less), stiffness_N_per_m,\n"
                "scene_stretch and link_stretch (the stretch of the scene and of its most stretched link, at rest),\n"
-               "stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
-               "the stable step), dt_s, time_per_frame_s (on this machine) and precision (double or float). The rows\n"
+               "stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s with this fraction of the\n"
+               "stable step), dt_s, time_per_frame_s (on this machine) and precision (double or float). The rows\n"
                "of float have the stiffness and the stretch of double, and steps and a time of their own. A scene\n"
                "whose height depends on more than the stretch of its links, such as a hammock, has only the rows for\n"
                "link.",
@@ -394,34 +394,11 @@ static void say(cli_table *table)
                     steps);
 }
 
-/* The largest fraction of the stable step of leapfrog for a kind of scene: the rules of scene.h. */
-static double largest_fraction(const preset *scene, const char **what)
-{
-    const double dragged = 0.1, damped = 0.02, lone = 1.5,
-                 minute = 60; /* [1/s] drag/mass, damping ratio of links, links
-                                                                           per particle of a rope, [s] */
-    const spring_scene_def *d = &scene->def;
-    double heaviest = 0, ratio = INFINITY;
-    for (size_t i = 0; i < d->particles; i++)
-        if (!scene->pinned[i])
-            heaviest = fmax(heaviest, d->mass != NULL ? d->mass[i] : d->mass_all > 0 ? d->mass_all : 1);
-    for (size_t i = 0; i < d->links; i++)
-        if (d->link[i].stiffness > 0 && d->link[i].flags == 0)
-            ratio = fmin(ratio, d->link[i].damping / sqrt(2 * d->link[i].stiffness * heaviest));
-    const bool rope = (double)d->links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
-    *what = ratio >= damped     ? "damped links"
-            : drags && !rope    ? "a sheet or a block with drag"
-            : drags             ? "a rope with drag"
-            : duration > minute ? "a long run without damping"
-                                : "smooth motion without damping (0.25 if it is violent or long)";
-    return ratio >= damped || (drags && !rope) ? 0.9 : duration > minute && !drags ? 0.25 : 0.5;
-}
-
 /* Prints the rule for the step of leapfrog, with the stable steps [s] of both precisions. */
 static void say_rule(cli_table *table, const preset *scene, double stable, double stable_float)
 {
     const char *what;
-    const double fraction = largest_fraction(scene, &what);
+    const double fraction = plan_fraction(scene, duration, &what);
     if (stable > 0 && isfinite(stable))
         cli_comment(table,
                     "steps: for %s, leapfrog may take %g of the stable step: %.4g s, %.0f per frame (float: %.4g "
