@@ -584,6 +584,19 @@ SPRING_API spring_status spring_scene_set_colliders(spring_scene *s, const sprin
 SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, const spring_collider *c, uint32_t count,
                                                       const char **field, size_t *index);
 
+/**
+ * Gets the colliders as they are now, with their present positions, axes, velocities and spins.
+ *
+ * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only. If a spin acceleration
+ * is not parallel to the spin, the further rotation differs in third order of the time. Use it to draw the colliders of a
+ * loaded state, or to change one collider and keep the others.
+ *
+ * @param[out]    out    may be NULL: only *count is written
+ * @param[in,out] count  size of out; afterwards the number of colliders
+ * @return SPRING_OK; SPRING_EINVAL: s or count is NULL; SPRING_ENOMEM: out is too small, and only *count was written
+ */
+SPRING_API spring_status spring_scene_get_colliders(const spring_scene *s, spring_collider *out, uint32_t *count);
+
 /** Copies, for particles first ... first + count - 1, a mask of the colliders that the particle touched in the last
  * step.
  *
@@ -809,9 +822,10 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  *
  * @param[in] in     a saved state, at any address
  * @param[in] bytes  its size
- * @return SPRING_OK; SPRING_EINVAL: NULL, or the state is truncated or damaged; SPRING_EMISMATCH: it is undamaged, but
- *         of a scene with another definition, or of another version of the format. Unless it returns SPRING_OK, nothing
- *         is changed, also with SPRING_SCENE_NO_UNDO
+ * @return SPRING_OK; SPRING_EINVAL: NULL; the state is truncated or damaged; or it has a custom body where the scene has
+ *         none now, or the reverse; SPRING_EMISMATCH: it is undamaged, but of a scene with another definition, or of
+ *         another version of the format. Unless it returns SPRING_OK, nothing is changed, also with
+ *         SPRING_SCENE_NO_UNDO
  */
 SPRING_API spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes);
 
@@ -907,6 +921,7 @@ SPRING_API spring_status spring_scenef_tear(spring_scenef *s, double stretch, co
                                             size_t capacity, size_t *count);
 SPRING_API spring_status spring_scenef_transform(spring_scenef *s, const double matrix[12]);
 SPRING_API spring_status spring_scenef_set_colliders(spring_scenef *s, const spring_collider *c, uint32_t count);
+SPRING_API spring_status spring_scenef_get_colliders(const spring_scenef *s, spring_collider *out, uint32_t *count);
 SPRING_API spring_status spring_scenef_check_colliders(const spring_scenef *s, const spring_collider *c, uint32_t count,
                                                        const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t *mask, size_t first, size_t count);

@@ -41,6 +41,7 @@
 #define spring_scene_get                spring_scenef_get
 #define spring_scene_getf               spring_scenef_getf
 #define spring_scene_get_link           spring_scenef_get_link
+#define spring_scene_get_colliders      spring_scenef_get_colliders
 #define spring_scene_init               spring_scenef_init
 #define spring_scene_steppers           spring_scenef_steppers
 #define spring_scene_set                spring_scenef_set

@@ -277,6 +277,48 @@ spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider 
     return SPRING_OK;
 }
 
+static void store3(double to[3], vector3 from)
+{
+    to[0] = from.x;
+    to[1] = from.y;
+    to[2] = from.z;
+}
+
+/* Replaces a collider by its state t after it was set. */
+static void move_collider(spring_collider *c, double t, uint32_t axes)
+{
+    const bool capsule = c->shape == SPRING_CAPSULE;
+    contact_body b;
+    spring_contact_place(&b, c, t, t, axes);
+    for (uint32_t a = 0; a < axes; a++) {
+        const double change = t * c->acceleration[a];
+        c->at[a] += t * (c->velocity[a] + change / 2);
+        c->to[a] += capsule ? t * (c->velocity_to[a] + change / 2) : 0;
+        c->velocity[a] += change;
+        c->velocity_to[a] += capsule ? change : 0;
+    }
+    store3(c->spin, b.start.spin);
+    for (int i = 0; i < (c->shape == SPRING_PLANE ? 1 : 3) && b.turns; i++)
+        store3(c->axis[i], b.start.axis[i]);
+}
+
+spring_status spring_scene_get_colliders(const spring_scene *s, spring_collider *out, uint32_t *count)
+{
+    if (s == NULL || count == NULL)
+        return SPRING_EINVAL;
+    const uint32_t room = *count;
+    *count = s->colliders;
+    if (out == NULL || room < s->colliders)
+        return out == NULL ? SPRING_OK : SPRING_ENOMEM;
+    const double t = colliders_time(s);
+    for (uint32_t i = 0; i < s->colliders; i++) {
+        out[i] = ((const spring_collider *)scene_read(s, ARRAY_COLLIDERS))[i];
+        if (t != 0)
+            move_collider(&out[i], t, s->layout.axes);
+    }
+    return SPRING_OK;
+}
+
 spring_status spring_scene_impulses(const spring_scene *s, spring_impulse *out, uint32_t first, uint32_t count)
 {
     if (s == NULL || out == NULL)

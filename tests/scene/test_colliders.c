@@ -277,6 +277,88 @@ static bool touches(const spring_scene *s, uint32_t first, uint32_t second, uint
     return mask[0] == first && mask[1] == second && mask[2] == third;
 }
 
+/* The colliders after `steps` steps of h, which have the colliders c at first. */
+static void collider_after(const spring_collider *c, uint32_t axes, double h, uint64_t steps, spring_collider *out)
+{
+    const double far[3] = {1e3, 1e3, 1e3};
+    const spring_scene_def def = {.axes = axes, .particles = 1, .position = far, .colliders = 1};
+    spring_scene *s = scene_of(&def);
+    uint32_t count = 1;
+    CHECK(spring_scene_set_colliders(s, c, 1) == SPRING_OK &&
+              spring_scene_advance(s, SPRING_LEAPFROG, h, steps) == SPRING_OK &&
+              spring_scene_get_colliders(s, out, &count) == SPRING_OK && count == 1,
+          "valid");
+    free(s);
+}
+
+/* d/dt of a vector that turns with the spin of a collider. */
+static void turning_rate(const spring_collider *c, const double u[3], double rate[3])
+{
+    for (int a = 0; a < 3; a++)
+        rate[a] = c->spin[(a + 1) % 3] * u[(a + 2) % 3] - c->spin[(a + 2) % 3] * u[(a + 1) % 3];
+}
+
+/* Colliders at the present time: paths by their closed forms, axes that turn with the spin, and the same motion if they
+   are set again. */
+static void present_colliders(void)
+{
+    enum { runs = 500, steps = 16 };
+    for (int run = 0; run < runs; run++) {
+        const uint32_t axes = 2 + (uint32_t)(random_bits() % 2);
+        const double h = 0x1p-10, t = steps * h; /* [s] */
+        spring_collider c = random_collider(axes), now, before, after, again, later;
+        const double growth = random_uniform(-1, 1); /* of the spin, in its direction */
+        for (uint32_t a = 0; a < 3; a++) {
+            c.acceleration[a] = a < axes ? random_uniform(-3, 3) : 0;
+            c.spin[a] = a < axes || axes == 2 ? c.spin[a] + (axes == 2 && a == 2 ? 2 : 0) : 0;
+            c.spin_acceleration[a] = growth * c.spin[a];
+        }
+        collider_after(&c, axes, h, steps, &now);
+        collider_after(&c, axes, h, steps - 1, &before);
+        collider_after(&c, axes, h, steps + 1, &after);
+        collider_after(&now, axes, h, 2 * steps, &again);
+        collider_after(&c, axes, h, 3 * steps, &later);
+        const double rounding = 64 * DBL_EPSILON; /* of numbers below 4 */
+        for (uint32_t a = 0; a < axes; a++) {
+            CHECK_CLOSE(now.at[a], c.at[a] + t * c.velocity[a] + t * t / 2 * c.acceleration[a], rounding, "the path");
+            CHECK_CLOSE(now.velocity[a], c.velocity[a] + t * c.acceleration[a], rounding, "its velocity");
+            CHECK_CLOSE(again.at[a], later.at[a], rounding, "the path goes on");
+            if (c.shape != SPRING_CAPSULE)
+                continue;
+            CHECK_CLOSE(now.to[a], c.to[a] + t * c.velocity_to[a] + t * t / 2 * c.acceleration[a], rounding, "to");
+            CHECK_CLOSE(again.to[a], later.to[a], rounding, "it goes on");
+        }
+        const int count = c.shape == SPRING_PLANE ? 1 : c.shape == SPRING_BOX ? (int)axes : 0;
+        for (int i = 0; i < count; i++) {
+            double rate[3];
+            turning_rate(&now, now.axis[i], rate);
+            for (uint32_t a = 0; a < axes; a++) {
+                const double slope = (after.axis[i][a] - before.axis[i][a]) / (2 * h);
+                CHECK_CLOSE(slope, rate[a], 1e-4, "spin x axis, with the error h^2/6 |spin|^3 of the slope");
+                CHECK_CLOSE(again.axis[i][a], later.axis[i][a], rounding, "the rotation goes on");
+            }
+        }
+        for (int a = 0; a < 3; a++)
+            CHECK_CLOSE(again.spin[a], later.spin[a], rounding, "the spin goes on");
+    }
+    const double far[3] = {1e3, 1e3, 1e3};
+    const spring_scene_def def = {.particles = 1, .position = far, .colliders = 3};
+    spring_scene *s = scene_of(&def);
+    spring_collider c[2] = {random_collider(3), random_collider(3)}, out[2] = {{.radius = 7}};
+    uint32_t count = 5;
+    CHECK(spring_scene_get_colliders(s, out, &count) == SPRING_OK && count == 0 && out[0].radius == 7, "none");
+    CHECK(spring_scene_set_colliders(s, c, 2) == SPRING_OK, "valid");
+    CHECK(spring_scene_get_colliders(s, NULL, &count) == SPRING_OK && count == 2, "their number");
+    count = 1;
+    CHECK(spring_scene_get_colliders(s, out, &count) == SPRING_ENOMEM && count == 2 && out[0].radius == 7, "no room");
+    CHECK(spring_scene_get_colliders(s, out, NULL) == SPRING_EINVAL &&
+              spring_scene_get_colliders(NULL, out, &count) == SPRING_EINVAL,
+          "NULL");
+    CHECK(spring_scene_get_colliders(s, out, &count) == SPRING_OK && count == 2 && out[1].radius == c[1].radius,
+          "both");
+    free(s);
+}
+
 static void touching_is_cleared(void)
 {
     const double x[] = {0, 1, 0}, identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -501,6 +583,7 @@ static const test tests[] = {
     {"speed limit", speed_limit},
     {"bad colliders", bad_colliders},
     {"axes from floats", axes_from_floats},
+    {"present colliders", present_colliders},
     {"touching is cleared", touching_is_cleared},
     {"rests", rests},
     {"rests in a groove", rests_in_a_groove},

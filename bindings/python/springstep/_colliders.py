@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 _SHAPES = {"plane": lib.SPRING_PLANE, "sphere": lib.SPRING_SPHERE, "capsule": lib.SPRING_CAPSULE, "box": lib.SPRING_BOX,
            "custom": lib.SPRING_CUSTOM}
+_VECTORS = ("at", "to", "half", "velocity", "velocity_to", "acceleration", "surface")
+_SPINS = ("spin", "spin_acceleration")
+_NUMBERS = ("radius", "friction", "restitution", "thickness", "bound")
 
 
 class ColliderOptions(TypedDict, total=False):
@@ -75,9 +78,9 @@ class Collider:
             return [*map(float, values), 0.0][:3]
 
         c.shape = _SHAPES[self.shape]
-        for field in ("at", "to", "half", "velocity", "velocity_to", "acceleration", "surface"):
+        for field in _VECTORS:
             setattr(c, field, vector(field, getattr(self, field)))
-        for field in ("spin", "spin_acceleration"):
+        for field in _SPINS:
             value = getattr(self, field)
             if np.ndim(value) == 0:
                 if axes == 3:
@@ -88,7 +91,7 @@ class Collider:
         rows: Any = self.axis
         for row, axis in enumerate(rows[:3]):
             c.axis[row] = vector("axis", axis)
-        for field in ("radius", "friction", "restitution", "thickness", "bound"):
+        for field in _NUMBERS:
             setattr(c, field, getattr(self, field))
         if not 0 <= self.mask < 2**32:
             invalid("colliders.mask", self.mask, place, reason="not an integer from 0 to 2^32 - 1")
@@ -98,6 +101,19 @@ class Collider:
             if found is None:
                 raise TypeError(f"colliders[{place}].gap: a {type(self.gap).__name__}, not a function in C")
             c.gap, c.user = ffi.cast("spring_gap_fn *", found[0]), ffi.cast("void *", found[1])
+
+
+def colliders_from(array: Any, bodies: list[Collider]) -> list[Collider]:
+    """Return colliders from structures of C. bodies: [len(array)] with the functions of custom bodies; [] if there are none."""
+    names = {number: name for name, number in _SHAPES.items()}
+    found = []
+    for place, c in enumerate(array):
+        given: dict[str, Any] = {name: tuple(getattr(c, name)) for name in _VECTORS + _SPINS}
+        given |= {name: getattr(c, name) for name in (*_NUMBERS, "mask")}
+        if bodies:
+            given |= {"gap": bodies[place].gap, "gap_data": bodies[place].gap_data}
+        found.append(Collider(shape=names[c.shape], axis=tuple(map(tuple, c.axis)), **given))
+    return found
 
 
 _GAP = "uint32_t (void *, double *, double *, double (*)[3])"

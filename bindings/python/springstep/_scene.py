@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, NoReturn, T
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from springstep._colliders import Collider
+from springstep._colliders import Collider, colliders_from
 from springstep._common import (Guard, MethodName, SpringError, fail, fail_step, finite, invalid, method_number, methods,
                                 names_of, step_count)
 from springstep._force import AnyForce, CForce, PythonForce, called_force
@@ -743,7 +743,7 @@ class Scene(Generic[F]):
         if status:
             of_another = status == lib.SPRING_EMISMATCH
             invalid("state", f"{len(state)} bytes",
-                    reason="the state of a scene with another definition" if of_another else "damaged or truncated")
+                    reason="the state of a scene with another definition" if of_another else "damaged, truncated, or with custom bodies at other places")
 
     def set_time(self, t: float) -> None:
         """Set the time. Colliders stay where they are, and nothing else changes.
@@ -798,6 +798,18 @@ class Scene(Generic[F]):
             if status == lib.SPRING_EINVAL:
                 self._refuse_colliders(array, given)
             fail(status, "colliders", len(given))
+
+    def get_colliders(self) -> list[Collider]:
+        """Return the colliders as they are now, with their present positions, axes, velocities and spins."""
+        count = ffi.new("uint32_t *")
+
+        def read() -> list[Collider]:
+            self._c("get_colliders")(self._pointer, ffi.NULL, count)
+            array = ffi.new("spring_collider[]", count[0])
+            self._c("get_colliders")(self._pointer, array, count)
+            return colliders_from(array, self._bodies)
+
+        return self._guard.short(read)
 
     def _refuse_colliders(self, array: Any, given: list[Collider]) -> NoReturn:
         """Raise the exception for colliders of which C refuses one."""

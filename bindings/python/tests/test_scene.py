@@ -130,7 +130,7 @@ def test_states_that_do_not_fit_are_refused():
             other.load(state)
         assert other.save() == before
     for wrong in (b"", state[:-1], state + b"\0", state[:200] + bytes([state[200] ^ 1]) + state[201:]):
-        with pytest.raises(InvalidError, match="damaged or truncated"):
+        with pytest.raises(InvalidError, match="damaged, truncated"):
             scene.load(wrong)
     with pytest.raises(TypeError):
         scene.load("text")
@@ -750,6 +750,8 @@ def test_custom_bodies(made, dtype):
     assert abs(scene.position() - ground.position()).max() < 8 * np.finfo(dtype).eps and scene.touching().all()
     assert fnv(again) == fnv(scene)
     again.load(scene.save())
+    again.set_colliders(again.get_colliders())
+    assert again.get_colliders() == scene.get_colliders()
     again.set_colliders([])
     with pytest.raises(springstep.InvalidError, match="^state"):
         again.load(scene.save())
@@ -792,6 +794,21 @@ def test_colliders_are_part_of_snapshots():
     scene.restore(before)
     scene.advance(1 / 240, 200)
     assert fnv(scene) == landed and (scene.touching() == mask).all() and mask.all()
+
+
+def test_present_colliders():
+    scene, other = cloth(3, colliders=2), cloth(3, colliders=2)
+    assert scene.get_colliders() == []
+    scene.set_colliders([springstep.box([0, 0, -9], [1, 2, 1], spin=[0, 0, 2], velocity=[0, 0, 1], mask=3),
+                         springstep.sphere([0, 0, 9], 0.5, velocity=[1, 0, 0], acceleration=[0, 2, 0], friction=0.25)])
+    scene.advance(1 / 1024, 512)
+    found = scene.get_colliders()
+    turned, ball = found
+    assert (turned.shape, turned.half, turned.mask, ball.shape, ball.radius, ball.friction) == ("box", (1, 2, 1), 3, "sphere", 0.5, 0.25)
+    assert turned.at == pytest.approx((0, 0, -8.5)) and turned.axis[0] == pytest.approx((math.cos(1), math.sin(1), 0))
+    assert ball.at == pytest.approx((0.5, 0.25, 9)) and ball.velocity == pytest.approx((1, 1, 0))
+    other.set_colliders(found)
+    assert other.get_colliders() == found
 
 
 def test_colliders_are_values():

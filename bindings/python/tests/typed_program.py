@@ -47,6 +47,7 @@ assert_type(scene.link(3), tuple[int, int, float, float, float])
 assert_type(scene.find_link(0, 1), Optional[int])
 assert_type(scene.tear(3.0), NDArray[np.uint32])
 scene.set_colliders([springstep.sphere(np.zeros(3), 0.2, friction=0.3), Collider("plane")])
+assert_type(scene.get_colliders(), list[Collider])
 scene.set_held_force(np.zeros((25, 3)))
 scene.drive(0, None) if grid.pinned[0] else None
 times, positions = scene.run(1e-3, 20, every=5, progress=lambda done, steps: None)
