@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // @ts-self-types="./animate.d.ts"
 // One loop of frames for any number of springs. It runs while one of them moves.
-import { check, checkFunction } from "./options.js";
+import { check } from "./options.js";
 import { watch } from "./watch.js";
 
 const nextFrame = (frame) =>
@@ -24,7 +24,7 @@ export function animator({
     now = request === nextFrame ? () => performance.now() : null,
 } = {}) {
     check(typeof request === "function", "request", "a function", request, TypeError);
-    checkFunction("now", now);
+    check(now === null || typeof now === "function", "now", "a function or null", now, TypeError);
     const entries = new WeakMap(); // { spring, draws, runs, time, stale } of a spring
     const moving = new Set();
     let requested = false;
@@ -77,8 +77,10 @@ export function animator({
         return entry.stale || !spring.settled;
     }
 
-    return function animate(spring, draw, { reducedMotion = "jump" } = {}) {
+    return function animate(spring, draw, { reducedMotion = "jump", ...more } = {}) {
+        check(typeof spring?.step === "function", "spring", "a Spring or Springs", spring, TypeError);
         check(typeof draw === "function", "draw", "a function", draw, TypeError);
+        for (const name in more) check(false, "an option", "reducedMotion", name);
         const known = reducedMotion === "jump" || reducedMotion === "run";
         check(known, "reducedMotion", '"jump" or "run"', reducedMotion, TypeError);
         let entry = entries.get(spring);
@@ -90,7 +92,7 @@ export function animator({
         entry.runs = reducedMotion === "run";
         const mine = { draw };
         entry.draws.add(mine);
-        if (spring.settled !== true) wake(entry);
+        wake(entry); // to draw it once
         return function stop() {
             entry.draws.delete(mine);
             if (entry.draws.size > 0 || entries.get(spring) !== entry) return;

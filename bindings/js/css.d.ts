@@ -5,10 +5,11 @@ import type { SpringParameters } from "./index.js";
  * The motion of a spring from rest at 0 to 1 as an easing of CSS, for transitions and animations that run off the main thread:
  * `element.animate(keyframes, linear({ bounce: 0.2 }))`. The error is at most 0.2 % of the way.
  *
+ * @param options parameters only: an easing does not stop at its target, and has no tolerances of its own
  * @param velocity of the start, in ways per second; default 0
  * @returns `duration` in milliseconds, and `easing`: `linear(0, 0.0088 1.65%, ..., 1)`
  */
 export declare function linear(
-    options?: SpringParameters,
+    options?: SpringParameters & { [K in "restDelta" | "restSpeed" | "clamp" | "onRest"]?: never },
     velocity?: number,
 ): { duration: number; easing: string };

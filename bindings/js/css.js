@@ -10,7 +10,7 @@ const tolerance = 0.0018; // of the way; the rest of 0.002 is for the digits of 
 
 export function linear(options = {}, velocity = 0) {
     checkFinite("velocity", velocity);
-    const { p } = settings(options);
+    const { p } = settings(options, {}, []);
     const seconds = restTime(p, -1, velocity, 1e-3, 3e-3 * sqrt(p.omega2));
     if (!(seconds > 0 && seconds < 1e6)) throw new RangeError("the spring does not settle");
     const valueAt = (i) => 1 + p.after((i / cells) * seconds, -1, velocity)[0];

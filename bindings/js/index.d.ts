@@ -63,21 +63,31 @@ type Each<T> = T extends unknown
 
 export type SpringsParameters = Each<SpringParameters>;
 
-export type SpringsOptions = SpringsParameters &
-    Each<Tolerances> & {
-        /** see Springs.clamp; default false */
-        clamp?: boolean;
-        /** see Springs.onRest; default null */
-        onRest?: ((i: number, springs: Springs) => void) | null;
-    };
+interface Callbacks {
+    /** see Spring.clamp; default false */
+    clamp?: boolean;
+    /** see Spring.onRest; default null */
+    onRest?: ((spring: Spring) => void) | null;
+}
 
-export type SpringOptions = SpringParameters &
-    Tolerances & {
-        /** see Spring.clamp; default false */
-        clamp?: boolean;
-        /** see Spring.onRest; default null */
-        onRest?: ((spring: Spring) => void) | null;
-    };
+interface SetCallbacks {
+    /** see Springs.clamp; default false */
+    clamp?: boolean;
+    /** see Springs.onRest; default null */
+    onRest?: ((i: number, springs: Springs) => void) | null;
+}
+
+export type SpringOptions = SpringParameters & Tolerances & Callbacks;
+
+export type SpringsOptions = SpringsParameters & Each<Tolerances> & SetCallbacks;
+
+/** Some of the parameters of one form. */
+type Some<T> = T extends unknown ? Partial<T> : never;
+
+/** Options of Spring.set(): parameters of a form, or some of the parameters of the form that the spring has. */
+export type SpringChanges = Some<SpringParameters> & Tolerances & Callbacks;
+
+export type SpringsChanges = Each<Some<SpringParameters>> & Each<Tolerances> & SetCallbacks;
 
 /** A value that follows a target. Bad input throws a RangeError or TypeError and changes nothing. */
 export declare class Spring {
@@ -99,19 +109,25 @@ export declare class Spring {
     /** Whether the value is at rest on its target. step() has no effect then. A new target makes it false until a step. */
     readonly settled: boolean;
 
-    /** Resolves when the value is at rest on its target, at once if it is. A new target keeps the promise. */
+    /**
+     * Resolves when the value comes to rest, also by jump() and finish(), or at once if it is at rest. If the target changes
+     * before, it resolves when the value is at rest on the new target.
+     */
     readonly finished: Promise<void>;
 
     /** Stop at the target instead of overshooting, however long the step. A value on its target stays there. */
     clamp: boolean;
 
-    /** Called when the spring settles: once for each new target, value or velocity, also if the target equals the value. */
+    /** Called each time the value comes to rest on its target, by step() or finish(), but not by jump(). */
     onRest: ((spring: Spring) => void) | null;
 
-    /** Replaces the parameters; value, velocity and target stay. Tolerances that are not given stay, too. */
-    set(options: SpringParameters & Tolerances): void;
+    /**
+     * Changes the options that are given. Value, velocity and target stay. Parameters of another form replace those of the
+     * spring: after `{ stiffness, damping }`, `{ damping: 10 }` keeps the stiffness, and `{ hertz: 2 }` does not keep the damping.
+     */
+    set(options: SpringChanges): void;
 
-    /** Places value and target at `value`, at rest. Does not call onRest. */
+    /** Places value and target at `value`, at rest. Resolves `finished`, but does not call onRest. */
     jump(value: number): void;
 
     /** Ends a gesture: sets the velocity, and the target if it is given. */
@@ -153,11 +169,11 @@ export declare class Springs {
     /** Called for each value that comes to rest on its target, after the step. */
     onRest: ((i: number, springs: Springs) => void) | null;
 
-    /** Whether value i is at rest on its target. */
+    /** Whether value i is at rest on its target. A property of Spring, and a method here. */
     settled(i: number): boolean;
 
-    /** Replaces the parameters, as Spring.set(). */
-    set(options: SpringsParameters & Each<Tolerances>): void;
+    /** Changes the options that are given, as Spring.set(). */
+    set(options: SpringsChanges): void;
 
     /** Places all values on their targets. */
     finish(): void;
@@ -174,6 +190,9 @@ export declare class Springs {
 export declare class VelocityTracker {
     /** `time` is in milliseconds, as `event.timeStamp`. */
     add(position: number, time: number): void;
-    /** Units per second at `time`, by default that of the last position. A pointer that has not moved for 100 ms is at rest. */
+    /**
+     * Units per second. `time` is in milliseconds, by default that of the last position. A pointer that has not moved for 100 ms
+     * is at rest.
+     */
     velocity(time?: number): number;
 }

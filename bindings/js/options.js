@@ -38,47 +38,56 @@ const ways = {
     ],
 };
 
-export const checkFunction = (name, value) =>
-    check(value === null || typeof value === "function", name, "a function or null", value, TypeError);
-
 /** The name of the method whose result console.log() of Node shows. */
 export const inspected = Symbol.for("nodejs.util.inspect.custom");
 
 /** The size of a motion that begins at a distance from the target with a velocity. */
 export const sizeOf = (p, distance, velocity) => abs(p.omega2 && distance) + abs(velocity) * p.reach;
 
+const wayOf = (options) => Object.keys(ways).find((name) => options[name] !== undefined);
+
+/** New options, and of those before them tolerances, and parameters in the same way. */
+export function merged(options, before) {
+    check(Object(options) === options, "options", "an object", options, TypeError);
+    const { restDelta, restSpeed } = before;
+    const way = wayOf(options);
+    return { ...(way && way !== wayOf(before) ? { restDelta, restSpeed } : before), ...options };
+}
+
 /**
- * Of options: the propagator p, the explicit tolerances, and the tolerances of distance and speed in a motion of a size.
- * `others` are the names of further options.
+ * Of new options, and options before them that stay: all of these as `given`, the propagator p, and the tolerances of distance
+ * and speed in a motion of a size.
  */
-export function settings(options, others) {
-    const { restDelta, restSpeed, ...rest } = options;
+export function settings(options, before = {}, others = ["restDelta", "restSpeed", "clamp", "onRest"]) {
+    const given = merged(options, before);
+    const { restDelta, restSpeed, onRest = null } = given;
     checkNotNegative("restDelta", restDelta ?? 0);
     checkNotNegative("restSpeed", restSpeed ?? 0);
-    const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others?.includes(name));
-    let way = given.find((name) => Object.keys(ways).includes(name));
-    if (!way && typeof options === "object" && given.every((name) => name === "bounce")) {
-        way = "duration";
-    }
-    if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
+    check(onRest === null || typeof onRest === "function", "onRest", "a function or null", onRest, TypeError);
+    const way = wayOf(given) ?? "duration";
     const [omegaOf, second] = ways[way];
-    for (const name of given)
-        if (name !== way && !ways[way].includes(name))
-            throw new TypeError(`the option ${name} does not go with ${way}`);
-    let { stiffness, damping, mass = 1 } = rest;
+    const possible = [way, ...ways[way].slice(1), ...others];
+    for (const name in given)
+        check(
+            possible.includes(name) || given[name] === undefined,
+            "an option",
+            `one of ${possible.join(", ")}`,
+            name,
+        );
+    let { stiffness, damping, mass = 1 } = given;
     if (omegaOf) {
-        const { [way]: first = 0.5, [second]: given = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = rest;
+        const { [way]: first = 0.5, [second]: shape = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = given;
         checkPositive(way, first);
         check(tolerance > 0 && tolerance < 1, "tolerance", "a number > 0 and < 1", tolerance);
-        let ratio = given;
+        let ratio = shape;
         if (second === "bounce") {
-            check(isNumber(given) && given > -1 && given <= 1, second, "a number > -1 and <= 1", given);
-            ratio = given >= 0 ? 1 - given : 1 / (1 + given);
-        } else (omegaOf.length > 1 ? checkPositive : checkNotNegative)(second, given);
+            check(isNumber(shape) && shape > -1 && shape <= 1, second, "a number > -1 and <= 1", shape);
+            ratio = shape >= 0 ? 1 - shape : 1 / (1 + shape);
+        } else (omegaOf.length > 1 ? checkPositive : checkNotNegative)(second, shape);
         const omega = omegaOf(first, ratio, tolerance);
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
-        check(stiffness >= leastNormal, "stiffness", "no denormal number", stiffness);
+        check(stiffness >= leastNormal, "stiffness", "a normal number", stiffness);
     }
     checkNotNegative("stiffness", stiffness);
     checkNotNegative("damping", damping);
@@ -87,5 +96,5 @@ export function settings(options, others) {
     checkFinite("damping / mass", damping / mass);
     const p = new Propagator(stiffness, damping, mass);
     const tolerances = (size) => [restDelta ?? size / 1e4, restSpeed ?? size / 1e3];
-    return { p, restDelta, restSpeed, tolerances };
+    return { given, p, tolerances };
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // One value that follows a target: spring_follow() without a load.
 import { abs, epsilon, min, PI } from "./elementary.js";
-import { checkFinite, checkFunction, inspected, isNumber, settings, sizeOf } from "./options.js";
+import { checkFinite, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
 import { restTime, turningTime } from "./settling.js";
 import { changed } from "./watch.js";
 
 export class Spring {
-    #settings;
+    #settings = {};
     #value;
     #velocity = 0;
     #target;
@@ -17,17 +17,13 @@ export class Spring {
     #size = 0; // of the motion since the target or the velocity was set
     #finished = null; // the promise
     #finish;
-    clamp;
-    onRest;
+    clamp = false;
+    onRest = null;
 
     constructor(value = 0, options = {}) {
         checkFinite("value", value);
-        this.#settings = settings(options, ["clamp", "onRest"]);
-        const { clamp = false, onRest = null } = options;
-        this.clamp = clamp;
-        checkFunction("onRest", onRest);
-        this.onRest = onRest;
         this.#value = this.#target = value;
+        this.set(options);
         if (new.target === Spring) Object.seal(this); // `spring.stiffness = 300` throws
     }
 
@@ -94,8 +90,8 @@ export class Spring {
     }
 
     set(options) {
-        const { restDelta, restSpeed } = this.#settings;
-        this.#settings = settings({ restDelta, restSpeed, ...options });
+        this.#settings = settings(options, this.#settings.given);
+        ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         if (!this.#settled) changed(this);
         else if (this.#value !== this.#target) this.#moves(); // it had no stiffness
     }
@@ -122,7 +118,7 @@ export class Spring {
 
     settlingTime() {
         if (this.#settled) return 0;
-        if (this.#targetVelocity !== 0) return Infinity;
+        if (this.#targetVelocity) return Infinity;
         const { p, tolerances } = this.#settings;
         const y = this.#value - this.#target;
         const v = this.#velocity;
@@ -167,7 +163,7 @@ export class Spring {
     #place(value, tells = true) {
         this.#value = value;
         this.#velocity = this.#targetVelocity;
-        if (this.#velocity !== 0) return value;
+        if (this.#velocity) return value;
         this.#settled = this.#resting = true;
         this.#finished = null;
         this.#finish?.();

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Many values, each with its own target: spring_batch_follow_moving() without a load.
-import { check, checkFinite, checkFunction, inspected, isNumber, settings, sizeOf } from "./options.js";
+import { check, checkFinite, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
 import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
 import { changed } from "./watch.js";
 
 /** Settings of each value; if no option is an array, of all values. */
-function settingsOf(options, count, others) {
+function settingsOf(options, count) {
     const lists = Object.entries(options).filter(
         ([, value]) => typeof value === "object" && value?.length >= 0,
     );
     for (const [name, { length }] of lists) check(length === count, `${name}.length`, `${count}`, length);
-    if (lists.length === 0) return settings(options, others);
+    if (lists.length === 0) return settings(options);
     return Array.from({ length: count }, (_, i) => {
         try {
-            return settings(
-                { ...options, ...Object.fromEntries(lists.map(([name, list]) => [name, list[i]])) },
-                others,
-            );
+            return settings({
+                ...options,
+                ...Object.fromEntries(lists.map(([name, list]) => [name, list[i]])),
+            });
         } catch (error) {
             error.message = `value ${i}: ${error.message}`;
             throw error;
@@ -31,7 +31,7 @@ const stopsAt = (y0, y, goal, moved) =>
 
 export class Springs {
     #settings; // of all values, or an array
-    #given; // options, of which set() keeps the tolerances
+    #given = {}; // options
     #target;
     #targetVelocity;
     #value;
@@ -41,17 +41,11 @@ export class Springs {
     #failed = -1; // first value that has kept its state in a step
     #steered = false; // whether targets may have velocities
     #rested = []; // values that came to rest in a step
-    clamp;
-    onRest;
+    clamp = false;
+    onRest = null;
 
     constructor(count, options = {}) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
-        this.#settings = settingsOf(options, count, ["clamp", "onRest"]);
-        this.#given = options;
-        const { clamp = false, onRest = null } = options;
-        this.clamp = clamp;
-        checkFunction("onRest", onRest);
-        this.onRest = onRest;
         const zeros = () => new Float64Array(count);
         [this.#value, this.#velocity, this.#target, this.#targetVelocity] = [
             zeros(),
@@ -60,6 +54,7 @@ export class Springs {
             zeros(),
         ];
         [this.#targets, this.#sizes] = [zeros(), zeros()];
+        this.set(options);
         if (new.target === Springs) Object.seal(this);
     }
 
@@ -97,10 +92,10 @@ export class Springs {
     }
 
     set(options) {
-        const { restDelta, restSpeed } = this.#given;
-        const given = { restDelta, restSpeed, ...options };
+        const given = merged(options, this.#given);
         this.#settings = settingsOf(given, this.#value.length);
         this.#given = given;
+        ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         changed(this);
     }
 
@@ -163,7 +158,7 @@ export class Springs {
     }
 
     /** Advances values with equal settings, and returns how many of them move. */
-    #advance({ p, tolerances, restDelta, restSpeed }, from, end, dt) {
+    #advance({ p, tolerances }, from, end, dt) {
         const [value, velocity, target, targetVelocity] = [
             this.#value,
             this.#velocity,
@@ -171,7 +166,8 @@ export class Springs {
             this.#targetVelocity,
         ];
         const sizes = this.#sizes;
-        const [mostDelta] = tolerances(restDelta >= 0 && restSpeed >= 0 ? 0 : this.#measure(p, from, end));
+        const isGiven = tolerances(NaN).every(isNumber); // no size has an effect
+        const [mostDelta] = tolerances(isGiven ? 0 : this.#measure(p, from, end));
         const near = (left, speed, size) => {
             const [byDelta, bySpeed] = tolerances(size);
             return left <= byDelta && abs(speed) <= bySpeed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A program in TypeScript that uses every declaration of the package, for tests/js.
-import { Spring, Springs, VelocityTracker, type SpringOptions } from "springstep";
+import { Spring, Springs, VelocityTracker, type SpringOptions, type SpringParameters } from "springstep";
 import { animate, animator } from "springstep/animate";
 import { linear } from "springstep/css";
 
@@ -57,8 +57,18 @@ const refused: (() => unknown)[] = [
     () => new Spring(0, { stiffness: [1], damping: 1 }),
     // @ts-expect-error: two forms
     () => new Springs(1, { stiffness: [1], damping: 1, hertz: [1] }),
-    // @ts-expect-error: not a parameter
-    () => new Spring(0).set({ clamp: true }),
+    // @ts-expect-error: a parameter of no form
+    () => new Spring(0).set({ bouncy: 1 }),
+    // @ts-expect-error
+    () => new Spring(0).set({ hertz: 1, bounce: 0 }),
+    // @ts-expect-error: options that an easing does not have
+    () => linear({ ...options, clamp: true }),
+    // @ts-expect-error
+    () => linear(options),
+    // @ts-expect-error: one call for each spring
+    () => animate([spring], () => {}),
+    // @ts-expect-error
+    () => animate(spring, () => {}, { reducedMotions: "run" }),
     // @ts-expect-error: no such property
     () => (new Spring(0).stiffness = 300),
 ];
@@ -86,8 +96,14 @@ const drawn: number[] = [];
 const stop: () => void = run(spring, (value, { velocity }) => drawn.push(value + 0 * velocity));
 run(many, (values: Float64Array) => drawn.push(0 * values[0]!), { reducedMotion: "run" });
 many.set({ stiffness: [100, 200], damping: 20 });
+many.set({ damping: 30, clamp: true });
 many.onRest = (i, springs) => springs.settled(i);
 spring.set({ stiffness: 300, damping: 20 });
+spring.set({ damping: 25 });
+spring.set({ restDelta: 0.02 });
+spring.set(options);
+const feel: SpringParameters = { duration: 0.5, bounce: 0.2 };
+spring.set(feel);
 const tracker = new VelocityTracker();
 tracker.add(3, 0);
 spring.release(tracker.velocity(16), 3);
@@ -100,7 +116,7 @@ for (let time = 0; timer.callback && time < 20000; time += 16) {
 stop();
 const settled: Promise<void> = spring.finished;
 await settled;
-const { duration, easing } = linear({ duration: 0.5, bounce: 0.2 }, 0);
+const { duration, easing } = linear(feel, 0);
 const good =
     spring.value === 3 &&
     spring.settlingTime() === 0 &&

@@ -74,7 +74,7 @@ await test("in an engine without SIMD the first use of a scene tells what is nee
     const [scenes, springs] = ["scenes.js", "index.js"].map((file) =>
         JSON.stringify(new URL(`../${file}`, import.meta.url)),
     );
-    const needed = /Error: springstep\/scenes needs SIMD for WebAssembly: .*Node 16.4 or later/;
+    const needed = /Error: springstep\/scenes needs SIMD for WebAssembly: .*Node 18 or later/;
     for (const [without, prints, fails] of [
         ["", "spring scenes used ", undefined],
         ["WebAssembly.validate = () => false", "spring scenes ", needed],
