@@ -74,6 +74,15 @@ async function flick(page, [x, y], [vx, vy], ms) {
     await page.mouse.up();
 }
 
+/** Dispatches events of touches at places. */
+async function fingers(page) {
+    const session = await page.context().newCDPSession(page);
+    return (type, ...places) => {
+        const touchPoints = places.map(([x, y], id) => ({ x, y, id }));
+        return session.send("Input.dispatchTouchEvent", { type, touchPoints });
+    };
+}
+
 const placeOf = (page, selector) =>
     page.evaluate((one) => getComputedStyle(document.querySelector(one)).translate, selector);
 const rests = (page, selector, place) =>
@@ -158,6 +167,49 @@ await test("drag: the element follows the pointer, keeps its velocity, and retur
     }
     assert.ok(flicks.some(good), JSON.stringify(flicks));
     assert.equal(await page.evaluate(() => x.settled && y.settled), true);
+    await page.mouse.move(20, 20);
+    await page.mouse.down({ button: "right" });
+    await page.mouse.move(80, 20);
+    assert.deepEqual(await page.evaluate(() => [x.value, x.settled]), [0, true], "another button");
+    await page.mouse.up({ button: "right" });
+    await rests(page, "#box", "0px");
+    await page.mouse.down();
+    await page.mouse.move(50, 20);
+    await page.mouse.up();
+    const [, speed] = await page.evaluate(() => window.released);
+    assert.ok(speed > 0, "a flick with one move has a velocity");
+    await rests(page, "#box", "0px");
+    const touches = await fingers(page);
+    await touches("touchStart", [20, 20]);
+    await touches("touchMove", [60, 30]);
+    await touches("touchStart", [60, 30], [80, 40]);
+    await touches("touchMove", [60, 30], [90, 70]);
+    await touches("touchEnd", [60, 30]);
+    assert.deepEqual(await page.evaluate(() => [x.value, y.value]), [40, 10], "another finger");
+    await touches("touchEnd");
+    await rests(page, "#box", "0px");
+    assert.deepEqual(page.errors, []);
+});
+
+await test("slots: a flick carries the element to the next slot, and the page is told when it rests", async () => {
+    const html = '<div id="box"></div>';
+    const more = `
+        window.rested = [];
+        const slots = [[0, 0], [300, 20], [600, 40]];
+        window.end = recipe.dragToSlots(document.querySelector("#box"), slots, (slot) => rested.push(slot));`;
+    const page = await opened("slots", program(page_, "Slots", "js"), { html, more });
+    await flick(page, [20, 20], [0, 0], 50);
+    await page.waitForFunction(() => rested.length === 1);
+    await flick(page, [20, 20], [2, 0], 100); // 200 pixels
+    await rests(page, "#box", "300px 20px");
+    await flick(page, [320, 40], [0.1, 0], 100);
+    await rests(page, "#box", "300px 20px");
+    const slots = [[0, 0], ...Array(2).fill([300, 20])];
+    assert.deepEqual(await page.evaluate(() => rested), slots);
+    await page.evaluate(() => end());
+    await flick(page, [320, 40], [1, 0], 100);
+    await page.waitForTimeout(50);
+    assert.equal(await placeOf(page, "#box"), "300px 20px", "it has ended");
     assert.deepEqual(page.errors, []);
 });
 
@@ -182,6 +234,27 @@ await test("React: in StrictMode, on a server, and after it is unmounted", async
     await flick(page, [20, 20], [1, 0], 50);
     await page.evaluate(() => window.unmount());
     await page.waitForTimeout(100);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("React: a property moves a spring", async () => {
+    const code = program(readme, "React", "tsx");
+    const more = `
+        import { StrictMode } from "react";
+        import { createRoot } from "react-dom/client";
+        const root = createRoot(document.querySelector("#root")!);
+        window.show = (open) => root.render(<StrictMode><recipe.Drawer open={open} /></StrictMode>);
+        window.show(false);`;
+    const page = await opened("drawer", code, { kind: "tsx", html: '<main id="root"></main>', more });
+    await rests(page, ".drawer", "-200px");
+    await page.evaluate(() => show(true));
+    await page.waitForFunction(
+        () => parseFloat(getComputedStyle(document.querySelector(".drawer")).translate) > -150,
+    );
+    await page.evaluate(() => show(false));
+    await rests(page, ".drawer", "-200px");
+    await page.evaluate(() => show(true));
+    await rests(page, ".drawer", "0px");
     assert.deepEqual(page.errors, []);
 });
 
@@ -236,6 +309,74 @@ await test("a list of 50", async () => {
     await rests(page, "#i49", "0px");
     await rests(page, "#i0", "0px 1960px");
     assert.deepEqual(page.errors, []);
+});
+
+await test("a list whose items are dragged", async () => {
+    const html = '<div id="a" style="position: absolute"></div><div id="b" style="position: absolute"></div>';
+    const more = `
+        import { Springs } from "springstep";
+        import { animate } from "springstep/animate";
+        const items = [...document.querySelectorAll("div")];
+        const y = new Springs(2, { duration: 0.4, bounce: 0.3 });
+        y.target.set([0, 100]);
+        y.finish();
+        animate(y, (values) => items.forEach((item, i) => (item.style.translate = "0 " + values[i] + "px")));
+        recipe.draggableItems(items, y);
+        const released = () => (window.released = [...y.value, ...y.velocity]);
+        items[1].addEventListener("pointerup", released);`;
+    const page = await opened("dragged", program(page_, "A list", "js", 1), { html, more });
+    await rests(page, "#b", "0px 100px");
+    await flick(page, [20, 120], [0, 0.5], 150);
+    const [first, second, still, speed] = await page.evaluate(() => window.released);
+    assert.ok(first === 0 && still === 0 && second > 150 && speed >= 0, `${[first, second, still, speed]}`);
+    await rests(page, "#b", "0px 100px");
+    assert.equal(await placeOf(page, "#a"), "0px");
+    assert.deepEqual(page.errors, []);
+});
+
+await test("a staggered list: items start one after the other", async () => {
+    const html = Array.from({ length: 9 }, (_, i) => `<div id="i${i}"></div>`).join("");
+    const more = `
+        window.order = [];
+        window.items = [...document.querySelectorAll("div")];
+        recipe.slideIn(items, 80);
+        const left = (item) => parseFloat(getComputedStyle(item).translate);
+        requestAnimationFrame(function look() {
+            const moves = items.map((item, i) => [i, left(item) > -200]).filter(([i, on]) => on && !order.includes(i));
+            order.push(...moves.map(([i]) => i));
+            if (order.length < 9) requestAnimationFrame(look);
+        });`;
+    const page = await opened("staggered", program(page_, "A staggered list", "js"), { html, more });
+    await rests(page, "#i8", "0px");
+    await rests(page, "#i0", "0px");
+    assert.deepEqual(await page.evaluate(() => order), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("a CSS transition moves like the spring", async () => {
+    const html = '<div id="box" style="translate: 0px"></div>';
+    const more = `
+        import { Spring } from "springstep";
+        const options = { duration: 0.5, bounce: 0.3 };
+        const box = document.querySelector("#box");
+        recipe.springTransition(box, "translate", options);
+        getComputedStyle(box).translate;
+        box.style.translate = "100px";
+        const [transition] = box.getAnimations();
+        transition?.pause();
+        window.errors = Array.from({ length: 50 }, (_, i) => {
+            const spring = new Spring(0, options);
+            spring.target = 100;
+            if (transition) transition.currentTime = 20 * i;
+            return Math.abs(spring.step(i / 50) - parseFloat(getComputedStyle(box).translate));
+        });`;
+    const code = program(page_, "A CSS transition", "js");
+    const page = await opened("transition", code, { html, more });
+    const errors = await page.evaluate(() => window.errors);
+    assert.ok(Math.max(...errors) < 0.2, `${errors}`);
+    assert.deepEqual(page.errors, []);
+    const reduced = await opened("transition", code, { html, more, reducedMotion: "reduce" });
+    assert.equal(await placeOf(reduced, "#box"), "100px", "it jumps");
 });
 
 await test("a sheet: a flick dismisses it, a slow drag does not", async () => {
