@@ -200,7 +200,7 @@ await test("slots: a flick carries the element to the next slot, and the page is
     const page = await opened("slots", program(page_, "Slots", "js"), { html, more });
     await flick(page, [20, 20], [0, 0], 50);
     await page.waitForFunction(() => rested.length === 1);
-    await flick(page, [20, 20], [2, 0], 100); // 200 pixels
+    await flick(page, [20, 20], [1.3, 0], 120); // 156 pixels, also if the pointer is held still before it lets go
     await rests(page, "#box", "300px 20px");
     await flick(page, [320, 40], [0.1, 0], 100);
     await rests(page, "#box", "300px 20px");

@@ -191,12 +191,13 @@ await test("set() keeps what is not given, of the same form", () => {
 await test("both tolerances decide when a spring settles", () => {
     const settling = (tolerances) => {
         const spring = new Spring(0, { duration: 0.5, bounce: 0.3, ...tolerances });
-        spring.target = 100;
+        spring.release(400, 65);
         return spring.settlingTime();
     };
     const usual = settling({});
-    assert.strictEqual(settling({ restDelta: 0.5 }), usual, "the speed is still too high");
-    assert(settling({ restDelta: 0.5, restSpeed: 10 }) < 0.6 * usual);
+    const soon = settling({ restDelta: 0.5, restSpeed: 10 });
+    assert.deepStrictEqual([usual.toFixed(2), soon.toFixed(2)], ["0.94", "0.50"], "the times of README");
+    assert.strictEqual(settling({ restDelta: 0.5 }), usual, "the speed is above its tolerance for longer");
 });
 
 await test("finished resolves when a spring rests, once, and at once if it does", async () => {
