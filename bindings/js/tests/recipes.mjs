@@ -172,22 +172,28 @@ await test("drag: the element follows the pointer, keeps its velocity, and retur
     await page.mouse.move(80, 20);
     assert.deepEqual(await page.evaluate(() => [x.value, x.settled]), [0, true], "another button");
     await page.mouse.up({ button: "right" });
-    await rests(page, "#box", "0px");
-    await page.mouse.down();
-    await page.mouse.move(50, 20);
-    await page.mouse.up();
+    await page.waitForFunction(() => x.settled && y.settled);
+    await page.evaluate(async () => {
+        const dispatch = (type, clientX) =>
+            document.querySelector("#box").dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX }));
+        dispatch("pointerdown", 20);
+        await new Promise((resolve) => setTimeout(resolve, 16));
+        dispatch("pointermove", 50);
+        dispatch("pointerup", 50);
+    });
     const [, speed] = await page.evaluate(() => window.released);
     assert.ok(speed > 0, "a flick with one move has a velocity");
-    await rests(page, "#box", "0px");
+    await page.waitForFunction(() => x.settled && y.settled);
     const touches = await fingers(page);
     await touches("touchStart", [20, 20]);
     await touches("touchMove", [60, 30]);
+    await page.waitForFunction(() => x.value === 40 && y.value === 10);
     await touches("touchStart", [60, 30], [80, 40]);
     await touches("touchMove", [60, 30], [90, 70]);
-    await touches("touchEnd", [60, 30]);
+    await page.waitForTimeout(50);
     assert.deepEqual(await page.evaluate(() => [x.value, y.value]), [40, 10], "another finger");
     await touches("touchEnd");
-    await rests(page, "#box", "0px");
+    await page.waitForFunction(() => x.settled && y.settled);
     assert.deepEqual(page.errors, []);
 });
 
@@ -201,9 +207,10 @@ await test("slots: a flick carries the element to the next slot, and the page is
     await flick(page, [20, 20], [0, 0], 50);
     await page.waitForFunction(() => rested.length === 1);
     await flick(page, [20, 20], [1.3, 0], 120); // 156 pixels, also if the pointer is held still before it lets go
-    await rests(page, "#box", "300px 20px");
+    await page.waitForFunction(() => rested.length === 2);
     await flick(page, [320, 40], [0.1, 0], 100);
-    await rests(page, "#box", "300px 20px");
+    await page.waitForFunction(() => rested.length === 3);
+    assert.equal(await placeOf(page, "#box"), "300px 20px");
     const slots = [[0, 0], ...Array(2).fill([300, 20])];
     assert.deepEqual(await page.evaluate(() => rested), slots);
     await page.evaluate(() => end());
