@@ -278,7 +278,8 @@ export class Scene {
             const pointer = take(state.length);
             memory.uint8(pointer, state.length).set(state);
             const status = this.#call("spring_scene_load", this.#scene, pointer, state.length);
-            const what = status === mismatch ? "the state of a scene with this definition" : "an undamaged state";
+            const what =
+                status === mismatch ? "the state of a scene with this definition" : "an undamaged state";
             check(status === 0, "state", what, `${state.length} bytes`, RangeError);
         });
         this.#frames()[0].fill(0);

@@ -280,7 +280,10 @@ await test("states that are damaged or of other scenes are refused, and change n
         /RangeError: state must be an undamaged state, got "?\d+ bytes/,
         ...[damaged, state.slice(1), state.slice(0, -8), new Uint8Array(0)],
     );
-    refuse(/RangeError: state must be the state of a scene with this definition/, rope({ editable: true }).save());
+    refuse(
+        /RangeError: state must be the state of a scene with this definition/,
+        rope({ editable: true }).save(),
+    );
     assert.throws(() => rope({ colliders: 1 }).load(state), RangeError);
     for (const wrong of [null, "text", [...state], new Float64Array(4)])
         assert.throws(() => scene.load(wrong), TypeError);
@@ -403,7 +406,7 @@ await test("a frame that fails changes nothing", () => {
     const hash = hashOf(scene);
     assert.throws(() => scene.frame("leapfrog", 1e-3, 0.2), {
         code: "SPRING_EUNSTABLE",
-        message: /maxSpeed; dt is 0.001/,
+        message: /maxSpeed.*; dt is 0.001/,
     });
     assert.equal(hashOf(scene), hash);
     assert.equal(scene.frame("leapfrog", 1e-3, 0.001), 1);
