@@ -32,6 +32,7 @@ const stopsAt = (y0, y, goal, moved) =>
 export class Springs {
     #settings; // of all values, or an array
     #given = {}; // options
+    #relative; // whether a tolerance depends on the size of a motion
     #target;
     #targetVelocity;
     #value;
@@ -95,6 +96,7 @@ export class Springs {
         const given = merged(options, this.#given);
         this.#settings = settingsOf(given, this.#value.length);
         this.#given = given;
+        this.#relative = given.restDelta == null || given.restSpeed == null;
         ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         changed(this);
     }
@@ -166,8 +168,7 @@ export class Springs {
             this.#targetVelocity,
         ];
         const sizes = this.#sizes;
-        const isGiven = tolerances(NaN).every(isNumber); // no size has an effect
-        const [mostDelta] = tolerances(isGiven ? 0 : this.#measure(p, from, end));
+        const [mostDelta] = tolerances(this.#relative ? this.#measure(p, from, end) : 0);
         const near = (left, speed, size) => {
             const [byDelta, bySpeed] = tolerances(size);
             return left <= byDelta && abs(speed) <= bySpeed;
