@@ -206,7 +206,9 @@ await test("slots: a flick carries the element to another slot, and the page is 
     const page = await opened("slots", program(page_, "Slots", "js"), { html, more });
     await flick(page, [20, 20], [0, 0], 50);
     await page.waitForFunction(() => rested.length === 1);
-    await flick(page, [20, 20], [1.3, 0], 120); // 156 pixels, also if the pointer is held still before it lets go
+    await page.mouse.down();
+    await page.mouse.move(260, 20, { steps: 5 });
+    await page.mouse.up();
     await page.waitForFunction(() => rested.length === 2);
     await flick(page, [320, 40], [0.1, 0], 100);
     await page.waitForFunction(() => rested.length === 3);
