@@ -414,7 +414,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    and sheets with shear springs with drag/mass of at least 0.1/s; up to 0.5 for ropes with such drag;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
  * `spring-work --problem steps` measures what longer steps cost. Use a smaller step if a link rotates faster than it
- * would oscillate. The forces of the callback are not considered.
+ * would oscillate. The forces of a callback are not considered; docs/games.md has a bound with them.
  *
  * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
  * structural, shear and bend springs, 1.5 to 1.6 times for such a cloth and 2 times for such a soft body. It is closer
