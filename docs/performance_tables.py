@@ -20,10 +20,12 @@ COMMANDS = {  # the longer ones first, so that the processor runs at its full cl
     'stiff': ['spring-work', '--problem', 'stiff-cloth'],
     'particles': ['spring-scene-map', '--time'],
     'cape': ['spring-work', '--problem', 'cape'],
+    'contacts': ['spring-bench', '--part', 'scene', '--kernel', 'leapfrog_sheet_16_on_a_plane'],
     **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
 }
 OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces', '--long': 'stiff-long'}, 'cape': {'--table': 'cape-equal'}}
 SOLVERS = {'leapfrog': 'leapfrog', 'xpbd-mesh': 'XPBD', 'xpbd-sheet': 'XPBD for sheets only'}
+CAPE, SHEET = 20 * 30, 35 * 35  # particles of the cape of spring-work, and of the sheet of spring-bench
 TETHERS = {'none': 'none', 'all': 'all particles', 'rows': 'every seventh row'}
 
 
@@ -90,10 +92,24 @@ def performance():
 
 
 def particles():
-    """Return the table of docs/games.md."""
+    """Return the table of docs/games.md, and the cost of contacts."""
     rows = [row for row in read('particles')[1] if row['method'] == 'leapfrog' and row['scene'] in PARTICLES]
-    return table(('scene', 'steps per frame', 'particles per millisecond'), ['---'] * 3,
-                 *((PARTICLES[row['scene']], row['substeps'], two_digits(row['particles_per_ms'])) for row in rows))
+    comments, runs = read('cape')
+    contacts, (plane,) = read('contacts')
+    if {read('particles')[0]['processor'], contacts['processor']} != {comments['processor']}:
+        raise SystemExit('the data of the cost are of several processors')
+    (whole,) = [row for row in runs if row['effort'] == 'fraction' and row['fraction'] == '0.9']
+    (alone,) = [row for row in runs if row['effort'] == 'no-figure' and row['tethers'] == 'rows']
+    capes = [('a cape on a running figure, float', whole), ('the same cape without the figure', alone)]
+    links, free, touching = (float(plane[name]) for name in ('count', 'limit_ns', 'ns_per_spring_step'))
+    return '\n\n'.join([
+        table(('scene', 'steps per frame', 'particles per millisecond'), ['---'] * 3,
+              *((PARTICLES[row['scene']], row['substeps'], two_digits(row['particles_per_ms'])) for row in rows),
+              *((title, row['steps_per_frame'], two_digits(CAPE / (float(row['time_us']) / 1e3))) for title, row in capes)),
+        f'In a step, a particle of cloth takes {two_digits(free * links / SHEET)} ns, and another '
+        f'{two_digits((touching - free) * links / SHEET)} ns if it rests or slides on a collider\n'
+        '(`spring-bench --part scene --kernel leapfrog_sheet_16_on_a_plane`).',
+    ])
 
 
 def cape():

@@ -5,7 +5,9 @@
  *
  *     p = K min(J0 - J, J0) if J < J0, else 0,   J = signed volume / volume at rest,   force = p dV/dx
  *
- * Above J0 the block is as it was. Below 0 the pressure is constant, which limits its stiffness.
+ * Above J0 the block is as it was. Below 0 the pressure is constant, which limits its stiffness. By Gershgorin's
+ * circles, it adds at most 23.3 K spacing = 93 k to the 48 k of the links of stiffness k at a particle. Leapfrog is
+ * therefore stable up to sqrt(48/(48 + 93)) = 0.58 of the stable step; 0.52 is 0.9 of this.
  *
  *     cc -std=c11 block.c -lspringstep -lm -o block
  */
@@ -99,10 +101,9 @@ int main(void)
         def.links = links, def.link = link, def.mass_all = mass, def.gravity[1] = -9.81, def.drag = 0.02;
         def.colliders = 2, def.particle_radius = skin, def.force = resist, def.user = &parts;
         must(spring_scene_bytes(&def, &bytes));
-        void *memory = malloc(bytes);
         spring_scene *s;
-        must(spring_scene_init(memory, bytes, &def, &s)); /* NULL memory gives SPRING_EINVAL */
-        const double dt = 0.35 * spring_scene_stable_step(s, SPRING_LEAPFROG), high = (W - 1) * spacing + 2 * skin;
+        must(spring_scene_init(malloc(bytes), bytes, &def, &s)); /* NULL memory gives SPRING_EINVAL */
+        const double dt = 0.52 * spring_scene_stable_step(s, SPRING_LEAPFROG), high = (W - 1) * spacing + 2 * skin;
         spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1}}, .friction = 0.5},
                                 {.shape = SPRING_PLANE, .at = {0, high}, .axis = {{0, -1}}}};
         for (int up = 0; up < 2; up++) {
@@ -114,7 +115,6 @@ int main(void)
             printf("%s, %s: upper corner at %.3f m, %d of %d parts inside out\n", resists ? "volumes" : "springs alone",
                    up ? "6 s later" : "pressed", x[0][1] - skin, parts.inverted, SIXTHS);
         }
-        free(memory);
+        free(s);
     }
-    return 0;
 }

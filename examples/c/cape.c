@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A cape in wind, on a capsule that runs, jumps and is teleported. Once per frame, the program sets the velocities of the
- * capsule and of the pinned row of the cape so that they reach the next pose. Tethers of every seventh row keep the cape
- * from stretching, and weighted links from wrinkling. It uses single precision, and 0.9 of the stable step: see docs/games.md.
+ * A cape in wind, on a capsule that runs, jumps, turns round and is teleported. Once per frame, the program sets the
+ * capsule at its pose, and velocities with which it and the pinned row of the cape reach the next pose. Tethers of
+ * every seventh row limit the stretch, and weighted links resist wrinkles. Single precision: see docs/games.md.
  *     cc -std=c11 cape.c -lspringstep -lm -o cape
  */
 #include <springstep/scene.h>
@@ -10,12 +10,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { W = 20, H = 30, N = W * H, TELEPORT = 150 /* frame */ };
+enum { W = 20, H = 30, N = W * H, TELEPORT = 180 /* frame */ };
 static const double frame = 1.0 / 60, mass = 0.002;      /* [s], [kg] of a particle */
 static const double spacing = 0.04, skin = 0.01;         /* [m], radius of a particle */
 static const double radius = 0.2, low = 0.4, high = 1.3; /* [m] radius and end heights of the body */
 static const double air[3] = {-2, 0, 3}, drag = 0.0015;  /* [m/s], [N s/m] of a particle */
-static double x[N][3];
+static double x[N][3], distance[2 * N];
 
 static void must(spring_status status)
 {
@@ -23,54 +23,57 @@ static void must(spring_status status)
         exit(fprintf(stderr, "%s\n", spring_status_string(status)));
 }
 
-/* The position of the body in frame i. It runs, and jumps for 0.6 s at t = 1 s. After the teleport it runs back. */
-static void place_body(int i, double facing, double at[2])
+typedef struct pose {
+    double x, y, yaw; /* [m], [m] of the feet, [rad] about y. At yaw 0, the body faces x */
+} pose;
+
+/* Before the teleport: the body runs, jumps for 0.6 s at t = 1 s, and turns round in 1.2 s. Afterwards it runs back. */
+static pose pose_in(int i)
 {
-    const double t = i * frame, jump = t - 1, run = 4 * (t < 0.5 ? t * t : t - 0.25);
-    at[0] = facing > 0 ? run : -100 - run;
-    at[1] = jump > 0 && jump < 0.6 ? 9.81 / 2 * jump * (0.6 - jump) : 0;
+    const double t = i * frame, jump = t - 1, turn = fmin(fmax(t - 1.7, 0), 1.2), part = turn / 1.2;
+    const double run = 4 * (t < 0.5 ? t * t : fmin(t, 1.7) - 0.25), back = 4 * fmax(t - 2.9, 0);
+    return (pose){.x = run + 4 * turn * (1 - part) - back - (i > TELEPORT ? 100 : 0),
+                  .y = fmax(9.81 / 2 * jump * (0.6 - jump), 0),
+                  .yaw = acos(-1) * part * part * (3 - 2 * part)};
 }
 
 /* Particles of the upper edge are on an arc behind the neck. */
-static void place_pin(int k, const double at[2], double facing, double target[3])
+static void place_pin(int k, const pose *p, double at[3])
 {
-    const double arc = radius + 2 * skin, angle = (k - (W - 1) / 2.0) * spacing / arc;
-    target[0] = at[0] - facing * arc * cos(angle);
-    target[1] = at[1] + high + 0.05;
-    target[2] = facing * arc * sin(angle);
+    const double arc = radius + 2 * skin, angle = p->yaw + (k - (W - 1) / 2.0) * spacing / arc;
+    at[0] = p->x - arc * cos(angle), at[1] = p->y + high + 0.05, at[2] = arc * sin(angle);
 }
 
-static void move_body(spring_scenef *cape, int i, double facing)
+static void move_body(spring_scenef *cape, const pose *now, const pose *next)
 {
-    double at[2], next[2], target[3];
-    place_body(i, facing, at), place_body(i + 1, facing, next);
     spring_collider c[2] = {{.shape = SPRING_CAPSULE, .radius = radius, .friction = 0.3},
                             {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.8}};
-    c[0].at[0] = c[0].to[0] = at[0], c[0].at[1] = at[1] + low, c[0].to[1] = at[1] + high;
-    c[0].velocity[0] = c[0].velocity_to[0] = (next[0] - at[0]) / frame;
-    c[0].velocity[1] = c[0].velocity_to[1] = (next[1] - at[1]) / frame;
+    c[0].at[0] = c[0].to[0] = now->x, c[0].at[1] = now->y + low, c[0].to[1] = now->y + high;
+    c[0].velocity[0] = c[0].velocity_to[0] = (next->x - now->x) / frame;
+    c[0].velocity[1] = c[0].velocity_to[1] = (next->y - now->y) / frame;
+    c[0].spin[1] = (next->yaw - now->yaw) / frame; /* of its surface, about its axis */
     must(spring_scenef_set_colliders(cape, c, 2));
     for (int k = 0; k < W; k++) {
-        place_pin(k, next, facing, target);
+        double target[3];
+        place_pin(k, next, target);
         must(spring_scenef_drive(cape, (size_t)k, target, frame));
     }
 }
 
-static void show(const spring_scenef *cape, const double at[2], double facing)
+static void show(const spring_scenef *cape, const pose *p)
 {
-    double depth = 0, longest = 0;
+    double depth = 0, longest = 0, energy = spring_scenef_energy(cape).elastic;
     must(spring_scenef_get(cape, SPRING_POSITION, x[0], 0, 0, N));
     for (int k = W; k < N; k++) {
-        const double dx = x[k][0] - at[0], dy = x[k][1] - fmin(fmax(x[k][1], at[1] + low), at[1] + high);
-        const double away = hypot(hypot(dx, dy), x[k][2]) - radius;
+        const double dx = x[k][0] - p->x, dy = x[k][1] - fmin(fmax(x[k][1], p->y + low), p->y + high);
         const double *neck = x[k % W], chord = hypot(hypot(x[k][0] - neck[0], x[k][1] - neck[1]), x[k][2] - neck[2]);
-        depth = fmax(depth, skin - fmin(away, x[k][1]));
+        depth = fmax(depth, skin - fmin(hypot(hypot(dx, dy), x[k][2]) - radius, x[k][1]));
         longest = fmax(longest, chord / (k / W * spacing));
     }
+    const double *hem = x[N - W / 2], behind = cos(p->yaw) * (p->x - hem[0]) + sin(p->yaw) * hem[2];
     printf(
         "%.2f s  body at %+.2f %.2f m  hem %.2f m behind, %.2f m up  inside %.1e m  stretch %.1f %%  elastic %.3f J\n",
-        spring_scenef_time(cape), at[0], at[1], facing * (at[0] - x[N - W / 2][0]), x[N - W / 2][1], depth,
-        100 * (longest - 1), spring_scenef_energy(cape).elastic);
+        spring_scenef_time(cape), p->x, p->y, behind, hem[1], depth, 100 * (longest - 1), energy);
 }
 
 int main(void)
@@ -79,7 +82,6 @@ int main(void)
     static spring_weighted_link bend[2 * N];
     static uint8_t pinned[N];
     static uint32_t work[2 * N];
-    static double distance[2 * N], at[2], facing = 1;
     spring_scenef *cape;
     spring_grid sheet = {.count = {W, H}, .spacing = spacing, .stiffness = 600};
     sheet.families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR, sheet.pinned = SPRING_GRID_FIRST_Y;
@@ -87,9 +89,9 @@ int main(void)
     must(spring_grid_size(&sheet, &particles, &links));
     must(spring_grid_fill(&sheet, x[0], pinned, link));
     must(spring_bend_grid(&sheet, pinned, SPRING_BEND_ROWS, 1e-3, 0, bend, &bends)); /* [N m], as paper */
-    place_body(0, facing, at);
+    pose now = pose_in(0);
     for (int i = 0; i < N; i++) /* hangs down behind the body */
-        place_pin(i % W, at, facing, x[i]), x[i][1] -= i / W * spacing;
+        place_pin(i % W, &now, x[i]), x[i][1] -= i / W * spacing;
     spring_scenef_def def = {.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, .drag = drag, .particle_radius = skin};
     def.particles = particles, def.position = x[0], def.mass_all = mass, def.pinned = pinned, def.colliders = 2;
     def.links = links, def.link = link, def.weighted_links = bends, def.weighted_link = bend;
@@ -100,21 +102,19 @@ int main(void)
         if ((H - 1 - link[links + i].a / W) % 7 == 0) /* of every seventh row, from the hem */
             link[def.links++] = link[links + i];
     must(spring_scenef_bytes(&def, &bytes));
-    void *memory = malloc(bytes);
-    must(spring_scenef_init(memory, bytes, &def, &cape)); /* NULL memory gives SPRING_EINVAL */
+    must(spring_scenef_init(malloc(bytes), bytes, &def, &cape)); /* NULL memory gives SPRING_EINVAL */
     const uint64_t steps = (uint64_t)ceil(frame / (0.9 * spring_scenef_stable_step(cape, SPRING_LEAPFROG)));
     for (int i = 0; i <= 300; i++) {
-        place_body(i, facing, at);
         if (i % 30 == 0)
-            show(cape, at, facing);
-        if (i == TELEPORT) { /* also turned by 180 degrees: x = -100 m - x, z = -z */
-            must(spring_scenef_transform(cape, (const double[]){-1, 0, 0, -100, 0, 1, 0, 0, 0, 0, -1, 0}));
-            place_body(i, facing = -1, at);
-            show(cape, at, facing);
+            show(cape, &now);
+        if (i == TELEPORT) {
+            must(spring_scenef_transform(cape, (const double[]){1, 0, 0, -100, 0, 1, 0, 0, 0, 0, 1, 0}));
+            now.x -= 100, show(cape, &now);
         }
-        move_body(cape, i, facing);
+        const pose next = pose_in(i + 1);
+        move_body(cape, &now, &next);
         must(spring_scenef_advance(cape, SPRING_LEAPFROG, frame / (double)steps, steps));
+        now = next;
     }
-    free(memory);
-    return 0;
+    free(cape);
 }

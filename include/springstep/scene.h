@@ -204,11 +204,13 @@ typedef struct spring_collider {
     double radius;          /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
     double velocity[3];     /**< [m/s] velocity of `at` */
     double velocity_to[3];  /**< [m/s] capsule: velocity of `to` */
-    double spin[3];         /**< [rad/s] angular velocity. It turns planes, boxes and custom bodies about `at`. A sphere
-                                and a capsule keep their place, and their surface spins about `at` or about the axis */
+    double spin[3];         /**< [rad/s] angular velocity. It turns planes, boxes and custom bodies about `at`. It does
+                                not move a sphere or a capsule, but adds spin x (distance from the centre or from the
+                                segment) to the velocity of their surface */
     double friction;        /**< Coulomb coefficient >= 0 */
     double restitution;     /**< 0 to 1: ratio of the normal speeds after and before an impact */
-    double acceleration[3]; /**< [m/s^2] of `at` and `to`: at + velocity t + acceleration t^2/2 */
+    double acceleration[3]; /**< [m/s^2] of `at`, at + velocity t + acceleration t^2/2, and also of `to`: one for both
+                                ends of a capsule */
     double spin_acceleration[3]; /**< [rad/s^2] turned by the vector spin t + spin_acceleration t^2/2 */
     double surface[3];           /**< [m/s] further velocity of the surface in the frame of the body, as of a conveyor
                                     belt. Its normal part is ignored. The frame of a plane, a sphere or a capsule has
@@ -412,7 +414,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    and sheets with shear springs with drag/mass of at least 0.1/s; up to 0.5 for ropes with such drag;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
  * `spring-work --problem steps` measures what longer steps cost. Use a smaller step if a link rotates faster than it
- * would oscillate. The forces of the callback are not considered.
+ * would oscillate. The forces of a callback are not considered; docs/games.md has a bound with them.
  *
  * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
  * structural, shear and bend springs, 1.5 to 1.6 times for such a cloth and 2 times for such a soft body. It is closer
@@ -476,8 +478,9 @@ SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
 
 /** Returns whether the scene is at rest: the speed of every particle, including pinned particles, is at most v_tol
     [m/s], and the acceleration of every free particle is at most a_tol [m/s^2]. Acceleration that is balanced by the
-    normal force or the static friction of a touched collider does not count. False for invalid input. May evaluate the
-    forces. */
+    normal force or the static friction of a touched collider does not count. No collider is touched after
+    spring_scene_set_colliders() until a step is taken, so call this after spring_scene_advance(). docs/games.md has
+    tolerances for single precision. False for invalid input. May evaluate the forces. */
 SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
 /** @} */

@@ -93,7 +93,8 @@ typedef enum spring_status {
     SPRING_EFUSED,    /**< a product and a sum are fused: they are rounded once instead of twice */
     SPRING_EBITS,     /**< the results of a short run are not bit-identical to the expected ones */
     /* returned for scenes: */
-    SPRING_EUNSTABLE, /**< a particle would become faster than the max_speed of its scene, or not finite */
+    SPRING_EUNSTABLE, /**< in a scene with max_speed, a particle would become faster, or its state would become infinite
+                           or NaN, also by a force that is not finite */
     /* returned for batches: */
     SPRING_EPARTIAL, /**< some springs of a batch failed and kept their state, and all others advanced */
     /* returned by spring_scene_load(): */

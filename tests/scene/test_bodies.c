@@ -945,6 +945,63 @@ static void contacts_of_a_custom_body(void)
 }
 
 /* A wall that starts to move hits the particle that rests on it: (1 + e) V. A plate stops it. */
+/* A taut rope with links of length 0.1 that slides to and fro around a sharp edge of 90 degrees at the origin. The depth to
+   which links enter the body [m], with particles of radius r. */
+static double cut_of_links(double r)
+{
+    enum { n = 12, axes = 2 };
+    const double spacing = 0.1, half = (n - 1) * spacing / 2, stretch = 1e-3;
+    double x[n][axes], deepest = 0;
+    uint8_t pinned[n] = {[0] = 1, [n - 1] = 1};
+    spring_link link[n - 1];
+    for (uint32_t i = 0; i < n; i++) {
+        const double along = (i * spacing - half) / sqrt(2);
+        x[i][0] = 0.5 + along, x[i][1] = 0.5 - along;
+        if (i > 0)
+            link[i - 1] = (spring_link){i - 1, i, spacing, 1000, 0.5, 0};
+    }
+    const spring_scene_def def = {.axes = axes,
+                                  .particles = n,
+                                  .links = n - 1,
+                                  .position = x[0],
+                                  .mass_all = 0.01,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .drag = 0.05,
+                                  .colliders = 1,
+                                  .particle_radius = r};
+    spring_scene *s = scene_of(&def);
+    set(s, &(spring_collider){.shape = SPRING_BOX, .at = {-1, -1}, .half = {1, 1, 1}, .axis = {{1}, {0, 1}, {0, 0, 1}}},
+        1);
+    const double leg = half * (1 + stretch) - r; /* from the edge to a pin, if a link is parallel to each face */
+    for (int i = 0; i < 120; i++) {
+        const double slide = i < 30 ? 0 : spacing * sin(0.1 * (i - 30));
+        const double first[axes] = {-leg - slide, r + 1e-3}, last[axes] = {r + 1e-3, -leg + slide};
+        CHECK(spring_scene_drive(s, 0, first, i < 10 ? 0.5 : 0.05) == SPRING_OK &&
+                  spring_scene_drive(s, n - 1, last, i < 10 ? 0.5 : 0.05) == SPRING_OK,
+              "pins");
+        run(s, SPRING_LEAPFROG, 5e-4, 100);
+        spring_scene_get(s, SPRING_POSITION, x[0], 0, 0, n);
+        for (int k = 1; k < n && i >= 30; k++)
+            for (double f = 0; f <= 1; f += 0.01) {
+                const double px = x[k - 1][0] + f * (x[k][0] - x[k - 1][0]),
+                             py = x[k - 1][1] + f * (x[k][1] - x[k - 1][1]);
+                deepest = fmax(deepest, fmin(-px, -py));
+            }
+    }
+    free(s);
+    return deepest;
+}
+
+static void links_at_an_edge(void)
+{
+    /* Ends at (-a, r) and (r, -a): s = sqrt(2) (a + r), and the middle is inside if r < a, that is, r < s/sqrt(8). */
+    const double spacing = 0.1, depth = cut_of_links(0.25 * spacing);
+    CHECK(cut_of_links(0.36 * spacing) == 0, "links stay outside if r >= s/sqrt(8) = 0.354 s, with the stretch of 1 %");
+    printf("# particles of radius 0.25 s: links enter a sharp edge by %.3f s\n", depth / spacing);
+    CHECK(depth > 0.01 * spacing, "smaller particles let them in");
+}
+
 static void hit_from_rest(void)
 {
     const double x[3] = {0.3, 0.1, -0.2}, none[3] = {0}, e = 0.5, speed = 2;
@@ -1032,6 +1089,7 @@ static void saved_bodies(void)
 static const test tests[] = {
     {"saved bodies", saved_bodies},
     {"a hit from rest", hit_from_rest},
+    {"links at an edge", links_at_an_edge},
     {"a damped spring on the floor", damped_spring_on_floor},
     {"no tunnelling", no_tunnelling},
     {"momentum balance", momentum_balance},

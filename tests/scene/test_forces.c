@@ -241,6 +241,65 @@ static void rest_far_from_the_origin(void)
         }
 }
 
+/* A sheet that hangs at rest in single precision. Each step rounds positions by u/sqrt(12), where u is the spacing of floats
+   there, which adds omega^2 u^2/12 to the mean square of the speed of a mode; damping with the rate g removes g dt of it. So
+   the mean square of the speed is omega^2 u^2/(24 g dt) along each axis. The largest of all particles and frames is up to 5
+   times its root, which is the rule of docs/games.md: omega u/sqrt(g dt). */
+static void rest_of_cloth(void)
+{
+    enum { w = 9, h = 12, n = w * h, frames = 120 };
+    for (int i = 0; i < 24 && sizeof(scalar) == 4; i++) {
+        const double k = random_log(50, 5000), mass = random_log(1e-3, 0.1), spacing = random_log(0.02, 0.2);
+        const double drag_rate = random_log(0.3, 3), ratio = i % 2 ? random_log(1e-3, 0.01) : 0; /* [1/s], [1] */
+        const double offset = i % 3 ? random_log(0.1, 100) : 0, damping = 2 * ratio * sqrt(k * mass);
+        const spring_grid sheet = {.count = {w, h},
+                                   .spacing = spacing,
+                                   .stiffness = k,
+                                   .damping = damping,
+                                   .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                                   .pinned = SPRING_GRID_FIRST_Y};
+        double x[3 * n], farthest = 0;
+        uint8_t pinned[n];
+        spring_link link[4 * n];
+        size_t particles, links;
+        CHECK(spring_grid_size(&sheet, &particles, &links) == SPRING_OK, "a sheet");
+        spring_grid_fill(&sheet, x, pinned, link);
+        for (int a = 0; a < 3 * n; a++)
+            x[a] += offset;
+        const spring_scene_def def = {.particles = n,
+                                      .links = links,
+                                      .position = x,
+                                      .mass_all = mass,
+                                      .pinned = pinned,
+                                      .link = link,
+                                      .gravity = {0, 9.81, 0},
+                                      .drag = drag_rate * mass};
+        spring_scene *s = scene_of(&def);
+        const double dt = random_uniform(0.4, 0.9) * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        const double omega = 2 / spring_scene_stable_step(s, SPRING_LEAPFROG);
+        const double rate = drag_rate + damping / k * omega * omega;
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, (uint64_t)(30 / drag_rate / dt)) == SPRING_OK, "stable");
+        spring_scene_get(s, SPRING_POSITION, x, 0, 0, n);
+        for (int a = 0; a < 3 * n; a++)
+            farthest = fmax(farthest, fabs(x[a]));
+        int exponent, at_rest = 0, quieter = 0;
+        (void)frexp(farthest, &exponent);
+        const double v = omega * ldexp(EPS, exponent - 1) / sqrt(rate * dt);
+        for (int frame = 0; frame < frames; frame++) {
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, (uint64_t)ceil(1 / (60 * dt))) == SPRING_OK, "stable");
+            at_rest += spring_scene_at_rest(s, v, omega * v);
+            quieter += spring_scene_at_rest(s, v / 20, INFINITY);
+        }
+        printf("# stiffness %.0f N/m, mass %.4f kg, drag/mass %.2f/s, damping ratio %.4f, farthest %.3g m: tolerances "
+               "%.2g m/s, "
+               "%.2g m/s^2\n",
+               k, mass, drag_rate, ratio, farthest, v, omega * v);
+        CHECK(at_rest == frames, "the largest of 324 speeds and 120 frames is below 5 standard deviations");
+        CHECK(quieter == 0, "the largest is not below a quarter of the standard deviation of the fastest modes");
+        free(s);
+    }
+}
+
 /* ---------------------------------------------------------------------------------- a rope that becomes taut, and drag */
 
 /* A mass falls from 0.5 m below its pin until its rope of 1 m is taut, bounces, and flies up again: its height and speed
@@ -341,6 +400,7 @@ int main(void)
         {"order where a rope becomes taut", order_across_the_kink},
         {"drag without bias", drag_without_bias},
         {"rest far from the origin", rest_far_from_the_origin},
+        {"rest of cloth in single precision", rest_of_cloth},
     };
     return RUN_TESTS("scene_forces", tests);
 }

@@ -44,6 +44,7 @@ typedef struct scene_feature {
     bool tethers, bend; /* of all particles; rows and columns resist bending */
     uint32_t capsules;  /* number of colliders */
     double far;         /* [m] distance of the capsules from the sheet; 0: they press against it */
+    bool floor;         /* a plane that all free particles touch */
     bool copied;        /* the scene is a copy whose arrays are not aligned to a cache line */
 } scene_feature;
 
@@ -201,7 +202,7 @@ static spring_scene_def definition(const scene_feature *f, scene_shape shape)
         .link = all.link,
         .drag = f->drag,
         .force = f->force,
-        .colliders = f->capsules,
+        .colliders = f->floor ? 1 : f->capsules,
         .particle_radius = f->capsules > 0 ? 0.01 : 0,
     };
     if (f->tethers)
@@ -295,6 +296,9 @@ static void build(built *b, const scene_feature *f, scene_shape shape, bool is_s
     }
     if (f->capsules > 0)
         set_capsules(b, f, (uint32_t)sqrt((double)all.particles));
+    if (f->floor)
+        check(spring_scene_set_colliders(
+            b->scene, &(spring_collider){.shape = SPRING_PLANE, .axis = {{0, 0, 1}}, .friction = 0.3}, 1));
     b->stable_step = stable_step(b, f->method);
     dt = 0.5 * stable_step(b, SPRING_LEAPFROG);
 }
@@ -608,6 +612,7 @@ static void add_features(uint32_t side)
         {"_5_colliders_near", {.method = SPRING_LEAPFROG, .capsules = 5}},
         {"_5_colliders_far", {.method = SPRING_LEAPFROG, .capsules = 5, .far = 100}},
         {"_32_colliders_far", {.method = SPRING_LEAPFROG, .capsules = 32, .far = 100}},
+        {"_on_a_plane", {.method = SPRING_LEAPFROG, .floor = true}},
     };
     scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .against = LEAPFROG};
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
@@ -617,7 +622,7 @@ static void add_features(uint32_t side)
     }
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
         s.feature = features[i].feature;
-        const bool small_only = s.feature.tethers || s.feature.bend || s.feature.capsules > 0;
+        const bool small_only = s.feature.tethers || s.feature.bend || s.feature.capsules > 0 || s.feature.floor;
         if (side <= (small_only ? 35 : 128) ||
             s.feature.damping > 0) /* the feature with a second pass over the links */
             add(features[i].name, &s);
