@@ -1233,8 +1233,8 @@ SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *p
  * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
  *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
  *                squares with parallel diagonals, and about 4 times for irregular meshes. As there are no links over the
- *                outer edges, a square cantilever is softer than a beam, by up to 21 %. Prefer spring_bend_grid() for
- *                grids of squares (tests/scene/test_bend.c)
+ *                outer edges, a square cantilever is softer than a beam, by up to 21 % (for irregular meshes from 21 %
+ *                softer to 5 % stiffer). Prefer spring_bend_grid() for grids of squares (tests/scene/test_bend.c)
  */
 SPRING_API spring_status spring_bend_mesh(size_t particles, const double *position, size_t triangles,
                                           const uint32_t *triangle, const uint8_t *pinned, double rigidity,

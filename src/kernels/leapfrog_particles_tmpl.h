@@ -159,37 +159,36 @@ SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_
     return for_each_vector(p, m, from, to, update_kick_drift, ends | predicts, true);
 }
 
-static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    return p->held_stride != 0 || SPRING_COMPACT ? move_kick_drift_held(p, m, from, to)
-                                                 : move_kick_drift_free(p, m, from, to);
-}
-
 SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_implicit_kick, 0, true);
 }
 
-static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    return p->held_stride != 0 || SPRING_COMPACT ? move_implicit_kick_held(p, m, from, to)
-                                                 : move_implicit_kick_free(p, m, from, to);
-}
+#endif
 
-#else
-
-/* With held forces: the kernels for shorter vectors. */
+/* With held forces, vectors of 64 bytes use the kernels for shorter vectors. */
 static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return p->held_stride == 0 ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
+#if SPRING_VECTOR == 64
+    if (p->held_stride != 0)
+        return SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
+#else
+    if (p->held_stride != 0 || SPRING_COMPACT)
+        return move_kick_drift_held(p, m, from, to);
+#endif
+    return move_kick_drift_free(p, m, from, to);
 }
 
 static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return p->held_stride == 0 ? move_implicit_kick_free(p, m, from, to)
-                               : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
-}
-
+#if SPRING_VECTOR == 64
+    if (p->held_stride != 0)
+        return SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
+#else
+    if (p->held_stride != 0 || SPRING_COMPACT)
+        return move_implicit_kick_held(p, m, from, to);
 #endif
+    return move_implicit_kick_free(p, m, from, to);
+}
 
 #endif

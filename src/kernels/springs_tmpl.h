@@ -140,9 +140,11 @@ static bool advance_exactly(const batch_run *b)
         return SPRING_COMPACT ? advance_shared(b, loaded) : loaded ? advance_shared(b, true) : advance_shared(b, false);
     return b->propagator->half == 1 && !SPRING_COMPACT ? follow_shared(b, true) : follow_shared(b, false);
 }
+#endif
 
 static bool advance_springs(const batch_run *b)
 {
+#if SPRING_VECTOR < 64
 #define STEP_METHOD(value, prepare, start, step) \
     case value:                                  \
         return advance_by(b, prepare, start, step);
@@ -151,17 +153,14 @@ static bool advance_springs(const batch_run *b)
     }
 #undef STEP_METHOD
     return advance_exactly(b);
-}
 #else
-/* Several steps of leapfrog, and exact solutions with different coefficients, gain most from vectors of 64 bytes. */
-static bool advance_springs(const batch_run *b)
-{
+    /* Several steps of leapfrog, and exact solutions with different coefficients, gain most from vectors of 64 bytes. */
     if (b->method == SPRING_LEAPFROG && b->n > 1)
         return advance_by(b, leapfrog_prepare, leapfrog_force, leapfrog_step);
     if (b->method == SPRING_EXACT && b->propagator == NULL)
         return advance_each_exactly(b);
     return spring_batch_v256.advance(b);
-}
 #endif
+}
 
 #endif

@@ -196,20 +196,22 @@ static double envelope_at(step_run i, const phase_rotation *j)
 /* ------------------------------------------------------------------------------------------------ the largest error */
 
 /* The largest value of a smooth function between ordered samples: the maximum of the parabola through three samples of
-   which the middle one is largest. */
+   which the middle one is largest, and through the last three, if it lies between them. */
 typedef struct error_peak {
     double t[2], value[2]; /* the last two, newest first */
     double most;
 } error_peak;
 
-static void error_peak_add(error_peak *p, double t, double value)
+static void error_peak_add(error_peak *p, double t, double value, bool last)
 {
-    if (p->value[0] >= p->value[1] && p->value[0] > value) {
+    const bool middle = p->value[0] >= p->value[1] && p->value[0] > value;
+    if (middle || (last && value >= p->value[0] && p->value[0] > p->value[1])) {
         const double before = p->t[0] - p->t[1], after = t - p->t[0];
         const double rise = (p->value[0] - p->value[1]) / before, fall = (p->value[0] - value) / after;
         const double curve = (rise + fall) / (before + after),
                      derivative = (rise * after - fall * before) / (before + after);
-        p->most = fmax(p->most, p->value[0] + derivative * derivative / (4 * curve));
+        if (middle || derivative < 2 * curve * after)
+            p->most = fmax(p->most, p->value[0] + derivative * derivative / (4 * curve));
     }
     p->t[1] = p->t[0];
     p->value[1] = p->value[0];
@@ -255,7 +257,7 @@ static double most_at_strides(const step_run *level, int levels, step_run now, d
         now = runs_joined(now, leap);
         const double value = envelope_at(now, phase);
         if (stride > 1)
-            error_peak_add(&p, i, value);
+            error_peak_add(&p, i, value, i == to);
         else
             p.most = fmax(p.most, value); /* there are no steps in between */
     }
@@ -263,6 +265,8 @@ static double most_at_strides(const step_run *level, int levels, step_run now, d
     if (left > 0)
         now = runs_joined(now, step_run_of(level, levels, left));
     const double last = envelope_at(now, phase);
+    if (left > 0 && stride > 1)
+        error_peak_add(&p, to, last, true);
     return spring_finite(last) ? fmax(p.most, last) : (double)INFINITY;
 }
 

@@ -144,7 +144,7 @@ static void steps_that_grow(void)
         const watched w = watched_of(random_log(1e-3, 1e3), zeta, n * z);
         const double error = measured(&w, SPRING_EULER, n),
                      known = spring_step_error(&w.p, SPRING_EULER, w.duration, w.duration / n);
-        check_known(known, error);
+        CHECK(known >= 0.99 * error && known <= 1.3 * error, "an estimate, since these errors are far above 0.5");
     }
 }
 
