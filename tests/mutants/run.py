@@ -3,6 +3,7 @@
 """Checks that the test suite notices mistakes: makes each of them in a copy of the tree and runs the C tests.
 
 usage: run.py [PATTERN]...
+       run.py --texts   checks only that each text to be changed occurs once in its file
 
 Makes the mistakes of mutants.tsv, or those whose name or file contains a PATTERN. Each must make the test that its row
 names fail. Status 1 if one does not. The last line is "N passed, N failed, N skipped".
@@ -244,6 +245,10 @@ def check_all(mutants, tree):
 
 def main():
     patterns = sys.argv[1:]
+    if patterns == ["--texts"]:
+        list(written_by_hand([]))
+        print("1..1\nok 1 - each text to be changed occurs once")
+        return 0
     if any(pattern.startswith("-") for pattern in patterns):
         print(__doc__)
         return 0 if patterns == ["--help"] else 2
