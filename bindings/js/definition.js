@@ -273,6 +273,27 @@ export function lendColliders(take, colliders) {
     return pointer;
 }
 
+/** Colliders from that layout. */
+export function collidersAt(pointer, count) {
+    return Array.from({ length: count }, (_, i) => {
+        const at = pointer + colliderBytes * i;
+        const numbers = memory.float64(at + 8, colliderNumbers);
+        const collider = { shape: shapes[memory.uint32(at, 1)[0]] };
+        let place = 0;
+        for (const [field, size] of fields) {
+            const value = Array.from(numbers.subarray(place, place + size));
+            place += size;
+            if (!special.has(field) || own[collider.shape].includes(field))
+                collider[field] = size === 1 ? value[0] : value;
+        }
+        if (collider.shape === "plane") collider.normal = Array.from(numbers.subarray(6, 9));
+        collider.mask = memory.uint32(at + 8 + 8 * colliderNumbers, 1)[0];
+        return collider;
+    });
+}
+
+export const roomForColliders = (take, count) => take(colliderBytes * count);
+
 const nameOf = { mass_all: "mass", max_speed: "maxSpeed", particle_radius: "particleRadius" };
 Object.assign(nameOf, { radius: "particleRadius", friction: "particleFriction" });
 

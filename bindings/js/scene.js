@@ -4,6 +4,7 @@ import {
     checkArray,
     checkCount,
     checkKnown,
+    collidersAt,
     define,
     lend,
     lendColliders,
@@ -11,6 +12,7 @@ import {
     linkBytes,
     linksAt,
     methodNumber,
+    roomForColliders,
 } from "./definition.js";
 import { components, textureCoordinates, triangles } from "./grid.js";
 import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
@@ -424,6 +426,17 @@ export class Scene {
             const i = memory.uint32(index, 1)[0]; // all else has been checked
             const [axes, what] = [list[i].axes, "orthonormal to 1e-3"];
             check(false, `colliders[${i}].axes`, what, axes ? Array.from(axes).join() : axes, RangeError);
+        });
+    }
+
+    getColliders() {
+        return borrowed((take) => {
+            const count = take(4);
+            this.#call("spring_scene_get_colliders", this.#scene, 0, count);
+            const [colliders] = memory.uint32(count, 1);
+            const pointer = roomForColliders(take, colliders);
+            this.#call("spring_scene_get_colliders", this.#scene, pointer, count);
+            return collidersAt(pointer, colliders);
         });
     }
 

@@ -419,6 +419,8 @@ export declare class Scene {
 
     /** Replaces all colliders. They are given at their pose now, and move at their velocities until they are set again. */
     setColliders(colliders: readonly Collider[]): void;
+    /** The colliders as they are now, as after load(): with all their fields, and their present poses and velocities. */
+    getColliders(): Collider[];
     /** For each particle the colliders that it touched in the last step: bit i stands for collider i. */
     touching(first?: number, count?: number): Uint32Array;
     /** What particles gave to a collider in the last call that advanced the scene. frame() may make several. */

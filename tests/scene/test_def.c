@@ -66,6 +66,13 @@ static void refused(void)
     REFUSED(d->links, SIZE_MAX, SPRING_ERANGE, "links", 0);
     REFUSED(d->links, SIZE_MAX / sizeof(spring_link) + 1, SPRING_ERANGE, "links", 0);
     REFUSED(d->links, UINT32_MAX, SPRING_ERANGE, "links", 0);
+    REFUSED(d->weighted_links, UINT32_MAX, SPRING_ERANGE, "weighted_links", 0);
+    double radius[most] = {0}, *const each = radius;
+    d->colliders = 1;
+    d->radius = each;
+    REFUSED(radius[4], -1, SPRING_EINVAL, "radius", 4);
+    d->radius = NULL;
+    d->colliders = 0;
     REFUSED(d->position, NULL, SPRING_EINVAL, "position", 0);
     REFUSED(d->link, NULL, SPRING_EINVAL, "link", 0);
     REFUSED(d->gravity[1], NAN, SPRING_EINVAL, "gravity", 1);

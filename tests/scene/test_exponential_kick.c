@@ -657,11 +657,67 @@ static void infinite_distance(void)
     }
 }
 
+/* Three particles in a line, whose weighted link with a rest length has the vector 0, and a link that is damped heavily. */
+static spring_scene_def heavy_line(void)
+{
+    static const double x[8] = {0, 0, 1, 0, 2, 0, 3, 0};
+    static const spring_link link = {2, 3, 1, 10, 1000, 0};
+    static const spring_weighted_link weighted = {
+        .particle = {0, 1, 2}, .weight = {1, -2, 1}, .rest = 0.1, .stiffness = 7, .damping = 2};
+    return (spring_scene_def){.axes = 2,
+                              .methods = 1u << SPRING_LEAPFROG,
+                              .particles = 4,
+                              .links = 1,
+                              .position = x,
+                              .mass_all = 0.7,
+                              .link = &link,
+                              .weighted_links = 1,
+                              .weighted_link = &weighted};
+}
+
+static void without_direction(void)
+{
+    const spring_scene_def def = heavy_line();
+    spring_scene *s = scene_of(&def);
+    double x[8];
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 5) == SPRING_OK, "a link without direction has no force");
+    spring_scene_get(s, SPRING_POSITION, x, 0, 0, 4);
+    CHECK(memcmp(x, def.position, sizeof x) == 0, "all links are at rest");
+    free(s);
+}
+
+/* Adds a force that is not finite in the call that counts down to 0. */
+static void bad_in_call(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                        scalar *const force[3])
+{
+    int *left = user;
+    (void)t, (void)particles, (void)x, (void)v;
+    if (--*left == 0)
+        force[0][1] += (scalar)INFINITY;
+}
+
+/* A callback that uses velocities is called twice in a step. */
+static void forces_not_finite(void)
+{
+    spring_scene_def def = heavy_line();
+    for (int bad = 1; bad <= 3; bad++) {
+        int left = bad;
+        def.force = bad_in_call;
+        def.user = &left;
+        spring_scene *s = scene_of(&def);
+        const spring_status status = spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 1);
+        CHECK(status == (bad <= 2 ? SPRING_ENONFINITE : SPRING_OK), "in the first or in the second call");
+        free(s);
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"a step", plain_steps},
         {"infinite distance", infinite_distance},
+        {"weighted links without direction", without_direction},
+        {"forces that are not finite", forces_not_finite},
         {"creep", creep},
         {"turning", turning_dumbbell},
 #ifndef SPRING_FLOAT

@@ -788,6 +788,7 @@ static void check_other_words(const block *b, const saved *y)
         size = 12,
         first_free,
         kept_force = first_free,
+        damped,
         colliders = 15,
         touching,
         t0,
@@ -826,6 +827,20 @@ static void check_other_words(const block *b, const saved *y)
             load_word(b->s, y, rests + below(each), negative, SPRING_EINVAL);
         if (each > 0)
             load_word(b->s, y, rests + each + below(each), negative, SPRING_EINVAL);
+        if (l->weighted > 0) { /* the second half of a weighted link: rest length, stiffness, damping */
+            const size_t weighted = rests + (state_word(y->bytes, damped) > 0 ? 3 : 2) * each,
+                         at_rest = weighted + number / 2;
+            const uint64_t largest =
+                sizeof(scalar) == sizeof(double) ? UINT64_C(0x7fefffffffffffff) : UINT64_C(0x7f7fffff7f7fffff);
+            load_word(b->s, y, at_rest, negative, SPRING_EINVAL);
+            const uint64_t was = state_word(y->bytes, at_rest + 1);
+            set_state_word(y->bytes, at_rest + 1, largest);
+            sign_state(y->bytes, y->size / 8);
+            if (spring_scene_load(b->s, y->bytes, y->size) == SPRING_OK) /* weights and masses allow it */
+                memcpy(b->s, kept.s, b->bytes);
+            set_state_word(y->bytes, at_rest + 1, was);
+            sign_state(y->bytes, y->size / 8);
+        }
     }
     CHECK(memcmp(kept.s, b->s, b->bytes) == 0, "nothing has changed");
     free(kept.room);

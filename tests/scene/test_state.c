@@ -585,6 +585,51 @@ static void refused_calls(void)
     free(before);
 }
 
+static void sizes_and_options(void)
+{
+    const double x[12] = {0};
+    const spring_link link[2] = {{0, 1, 0, 2, 0, 0}, {1, 2, 0, 2, 0, 0}};
+    const spring_weighted_link weighted = {.particle = {0, 1, 2}, .weight = {1, -2, 1}, .stiffness = 3};
+    const spring_scene_def def = {.axes = 2,
+                                  .flags = SPRING_SCENE_EDITABLE,
+                                  .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
+                                  .particles = 6,
+                                  .links = 2,
+                                  .position = x,
+                                  .link = link,
+                                  .weighted_links = 1,
+                                  .weighted_link = &weighted,
+                                  .colliders = 5};
+    spring_scene *s = scene_of(&def);
+    const spring_scene_info is = spring_scene_describe(s), none = spring_scene_describe(NULL);
+    CHECK(is.axes == 2 && is.flags == def.flags && is.methods == def.methods && is.particles == 6 && is.links == 2 &&
+              is.weighted_links == 1 && is.colliders == 5,
+          "as defined");
+    CHECK(none.axes == 0 && none.flags == 0 && none.methods == 0 && none.particles == 0 && none.links == 0 &&
+              none.weighted_links == 0 && none.colliders == 0,
+          "NULL");
+    free(s);
+}
+
+/* stiffness weight^2/mass must be finite, also when a mass changes. */
+static void too_light_for_weighted(void)
+{
+    const double x[12] = {0}, large = (double)SCALAR_MAX / 1e6, light = 1e-9, fine = 0.5;
+    const spring_weighted_link weighted = {.particle = {0, 1, 2}, .weight = {1, -2, 1}, .stiffness = large};
+    const spring_scene_def def = {.axes = 2,
+                                  .flags = SPRING_SCENE_EDITABLE,
+                                  .particles = 6,
+                                  .position = x,
+                                  .mass_all = 2,
+                                  .weighted_links = 1,
+                                  .weighted_link = &weighted};
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_set_mass(s, 1, 1, &light) == SPRING_EINVAL && spring_scene_set_mass(s, 1, 1, &fine) == SPRING_OK,
+          "of a particle of the link");
+    CHECK(spring_scene_set_mass(s, 5, 1, &light) == SPRING_OK, "of another particle");
+    free(s);
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -600,6 +645,8 @@ int main(void)
         {"the masses of freed particles", masses_of_the_freed},
         {"links are found", links_found},
         {"calls that are refused", refused_calls},
+        {"sizes and options", sizes_and_options},
+        {"masses that are too small for weighted links", too_light_for_weighted},
     };
     return RUN_TESTS("scene_state", tests);
 }

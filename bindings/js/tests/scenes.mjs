@@ -683,6 +683,30 @@ await test("contacts: accelerating bodies, belts and impulses", () => {
     scene.free();
 });
 
+await test("colliders at their present places", () => {
+    const scene = new Scene({ position: [9, 9, 9], mass: [0.5], colliders: 4 });
+    assert.deepEqual(scene.getColliders(), []);
+    const bodies = [
+        { shape: "plane", at: [0, -1, 0], normal: [0, 2, 0], friction: 0.5 },
+        { shape: "sphere", at: [0, 0, 9], radius: 0.5, velocity: [1, 0, 0], acceleration: [0, 2, 0] },
+        { shape: "capsule", at: [0, 0, 0], to: [1, 0, 0], radius: 0.25, velocityTo: [0, 1, 0] },
+        { shape: "box", at: [0, 0, -9], half: [1, 2, 1], spin: [0, 0, 2], mask: 3 },
+    ];
+    scene.setColliders(bodies);
+    scene.advance("leapfrog", 1 / 1024, 512);
+    const [plane, ball, capsule, box] = scene.getColliders();
+    assert.deepEqual([plane.normal, plane.friction, plane.radius], [[0, 1, 0], 0.5, undefined]);
+    assert.deepEqual([ball.at, ball.velocity, ball.radius], [[0.5, 0.25, 9], [1, 1, 0], 0.5]);
+    assert.deepEqual([capsule.to, capsule.velocityTo], [[1, 0.5, 0], [0, 1, 0]]);
+    assert.deepEqual([box.half, box.mask], [[1, 2, 1], 3]);
+    assert.ok(Math.hypot(box.axes[0] - Math.cos(1), box.axes[1] - Math.sin(1)) < 1e-14);
+    const other = new Scene({ position: [9, 9, 9], mass: [0.5], colliders: 4 });
+    other.setColliders([plane, ball, capsule, box]);
+    assert.deepEqual(other.getColliders(), [plane, ball, capsule, box]);
+    scene.free();
+    other.free();
+});
+
 await test("contacts: radius, friction and mask of particles, mask of colliders", () => {
     const definition = {
         position: [0, 1, 0, 2, 1, 0, 4, 1, 0, 6, 1, 0],
