@@ -221,7 +221,7 @@ own.box = ["radius", "half", "axes"];
 const special = new Set(Object.values(own).flat());
 const required = { plane: [], sphere: ["radius"], capsule: ["to", "radius"], box: ["half"] };
 const colliderNumbers = 39;
-const colliderBytes = 8 * 44; // shape, numbers, mask, two pointers, and two numbers of custom bodies
+export const colliderBytes = 8 * 44; // shape, numbers, mask, two pointers, and two numbers of custom bodies
 
 /** Colliders in the layout of spring_collider. */
 export function lendColliders(take, colliders) {
@@ -291,8 +291,6 @@ export function collidersAt(pointer, count) {
         return collider;
     });
 }
-
-export const roomForColliders = (take, count) => take(colliderBytes * count);
 
 const nameOf = { mass_all: "mass", max_speed: "maxSpeed", particle_radius: "particleRadius" };
 Object.assign(nameOf, { radius: "particleRadius", friction: "particleFriction" });

@@ -4,6 +4,7 @@ import {
     checkArray,
     checkCount,
     checkKnown,
+    colliderBytes,
     collidersAt,
     define,
     lend,
@@ -12,7 +13,6 @@ import {
     linkBytes,
     linksAt,
     methodNumber,
-    roomForColliders,
 } from "./definition.js";
 import { components, textureCoordinates, triangles } from "./grid.js";
 import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
@@ -434,7 +434,7 @@ export class Scene {
             const count = take(4);
             this.#call("spring_scene_get_colliders", this.#scene, 0, count);
             const [colliders] = memory.uint32(count, 1);
-            const pointer = roomForColliders(take, colliders);
+            const pointer = take(colliderBytes * colliders);
             this.#call("spring_scene_get_colliders", this.#scene, pointer, count);
             return collidersAt(pointer, colliders);
         });

@@ -697,7 +697,13 @@ await test("colliders at their present places", () => {
     const [plane, ball, capsule, box] = scene.getColliders();
     assert.deepEqual([plane.normal, plane.friction, plane.radius], [[0, 1, 0], 0.5, undefined]);
     assert.deepEqual([ball.at, ball.velocity, ball.radius], [[0.5, 0.25, 9], [1, 1, 0], 0.5]);
-    assert.deepEqual([capsule.to, capsule.velocityTo], [[1, 0.5, 0], [0, 1, 0]]);
+    assert.deepEqual(
+        [capsule.to, capsule.velocityTo],
+        [
+            [1, 0.5, 0],
+            [0, 1, 0],
+        ],
+    );
     assert.deepEqual([box.half, box.mask], [[1, 2, 1], 3]);
     assert.ok(Math.hypot(box.axes[0] - Math.cos(1), box.axes[1] - Math.sin(1)) < 1e-14);
     const other = new Scene({ position: [9, 9, 9], mass: [0.5], colliders: 4 });
