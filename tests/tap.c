@@ -9,7 +9,7 @@
 
 #include "check.h"
 
-static uint64_t seed = 20240917; /* or the environment variable SPRING_SEED */
+static uint64_t seed = 20240917;         /* or the environment variable SPRING_SEED */
 static const unsigned most_failures = 5; /* of a test; the next one ends it */
 
 static uint64_t generator;
