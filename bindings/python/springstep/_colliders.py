@@ -110,9 +110,10 @@ def colliders_from(array: Any, bodies: list[Collider]) -> list[Collider]:
     for place, c in enumerate(array):
         given: dict[str, Any] = {name: tuple(getattr(c, name)) for name in _VECTORS + _SPINS}
         given |= {name: getattr(c, name) for name in (*_NUMBERS, "mask")}
+        given |= {"shape": names[c.shape], "axis": tuple(map(tuple, c.axis))}
         if bodies:
             given |= {"gap": bodies[place].gap, "gap_data": bodies[place].gap_data}
-        found.append(Collider(shape=names[c.shape], axis=tuple(map(tuple, c.axis)), **given))
+        found.append(Collider(**given))
     return found
 
 
