@@ -393,7 +393,7 @@ static void load_state(spring_scene *scene, const state *y)
                  "disturbances should be those of the run that saved it",
                  load);
     if (status != SPRING_OK)
-        cli_fail(CLI_USAGE, "--load: \"%s\" is damaged", load);
+        cli_fail(CLI_USAGE, "--load: \"%s\" is not a saved state, or damaged", load);
 }
 
 static void save_state(const spring_scene *scene, cli_table *file)

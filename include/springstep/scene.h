@@ -590,9 +590,9 @@ SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, con
 /**
  * Gets the colliders as they are now, with their present positions, axes, velocities and spins.
  *
- * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only. If a spin acceleration
- * is not parallel to the spin, the further rotation differs in third order of the time. Use it to draw the colliders of a
- * loaded state, or to change one collider and keep the others.
+ * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only, unless a spin
+ * acceleration is not parallel to the spin: then their further rotation is another one. Use the function to draw the
+ * colliders of a loaded state, or to change one collider and keep the others.
  *
  * @param[out]    out    may be NULL: only *count is written
  * @param[in,out] count  size of out; afterwards the number of colliders

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The kernels of scenes (loops over links and over particles): their arguments, their formulas and the type of their
-   table. scene_tmpl.h defines the tables: the field kick_drift is move_kick_drift() of leapfrog_particles_tmpl.h, and so on;
-   band_forces is compute_band_forces() of bands_tmpl.h. */
+   table. scene_tmpl.h defines the tables: the field kick_drift is move_kick_drift(), and so on; band_forces is
+   compute_band_forces() of bands_tmpl.h. */
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 

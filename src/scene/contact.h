@@ -44,8 +44,8 @@ typedef struct contact_body {
     body_pose start, end;
     /* Bounds on where a particle of radius r is at the start of the step if it can touch the body. */
     double reach, growth; /* [m] distance from the core <= reach + growth (r + |d - shift|), d: its displacement */
-    double low[3],
-        high[3]; /* [m] box, to be extended by growth (reach_of_box r + way_of_box |d|); +-INFINITY: not bounded */
+    /* [m] Box, to be extended by growth (reach_of_box r + way_of_box |d|). +-INFINITY: not bounded. */
+    double low[3], high[3];
 } contact_body;
 
 /* What the contacts of a step have in common. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "work/work.h"
+#include "work_precision/work.h"
 
 enum { MOST_PROBLEMS = 32 };
 static work opened[MOST_PROBLEMS]; /* once for all tests: a reference takes seconds */

@@ -67,9 +67,9 @@ static void refused(void)
     REFUSED(d->links, SIZE_MAX / sizeof(spring_link) + 1, SPRING_ERANGE, "links", 0);
     REFUSED(d->links, UINT32_MAX, SPRING_ERANGE, "links", 0);
     REFUSED(d->weighted_links, UINT32_MAX, SPRING_ERANGE, "weighted_links", 0);
-    double radius[most] = {0}, *const each = radius;
+    double radius[most] = {0};
     d->colliders = 1;
-    d->radius = each;
+    d->radius = radius;
     REFUSED(radius[4], -1, SPRING_EINVAL, "radius", 4);
     d->radius = NULL;
     d->colliders = 0;

@@ -251,7 +251,7 @@ static void rest_of_cloth(void)
     for (int i = 0; i < 24 && sizeof(scalar) == 4; i++) {
         const double k = random_log(50, 5000), mass = random_log(1e-3, 0.1), spacing = random_log(0.02, 0.2);
         const double drag_rate = random_log(0.3, 3), ratio = i % 2 ? random_log(1e-3, 0.01) : 0; /* [1/s], [1] */
-        const double offset = i % 3 ? random_log(0.1, 100) : 0, damping = 2 * ratio * sqrt(k * mass);
+        const double offset = i % 3 ? random_log(0.1, 100) : 0, damping = ratio * sqrt(2 * k * mass);
         const spring_grid sheet = {.count = {w, h},
                                    .spacing = spacing,
                                    .stiffness = k,

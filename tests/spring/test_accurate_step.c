@@ -117,6 +117,18 @@ static void maxima_between_samples(void)
     }
 }
 
+/* The largest error of symplectic Euler without damping comes twice a period. In runs that end shortly after it, it lies in
+   the last interval between samples. */
+static void maxima_in_the_last_interval(void)
+{
+    for (int i = 0; i < 40; i++) {
+        const watched w = watched_of(random_log(1e-3, 1e3), 0, 105 + 0.02 * i); /* a quarter of the oscillation */
+        const double n = 19472;
+        check_known(spring_step_error(&w.p, SPRING_SYMPLECTIC_EULER, w.duration, w.duration / n),
+                    measured(&w, SPRING_SYMPLECTIC_EULER, n));
+    }
+}
+
 /* Just below the stable step of a method without dissipation, by less than damping_ratio^2/2 of it, the roots of a step are
    real, negative and all but equal: it does not turn with the spring, and errors of hundreds come before they decay. */
 static void steps_that_do_not_turn(void)
@@ -282,6 +294,7 @@ int main(void)
         {"other units", units},
         {"the least number of steps", least_number_of_steps},
         {"maxima between samples", maxima_between_samples},
+        {"maxima in the last interval", maxima_in_the_last_interval},
         {"steps that do not turn", steps_that_do_not_turn},
         {"steps that grow", steps_that_grow},
         {"extreme numbers", extreme_numbers},

@@ -39,7 +39,7 @@ uint64_t plan_scene_frames(const plan_scene *s);
 unsigned plan_damping_evaluations(const preset *scene, double dt, double *reach);
 
 /** The largest fraction of the stable step that leapfrog may take in a scene of this kind, by the rules of scene.h.
-    duration: [s] NaN: not known. *what: the kind. */
+    duration: [s] NaN: not known. *what: the kind; what may be NULL. */
 double plan_fraction(const preset *scene, double duration, const char **what);
 
 /* The precision of a scene. */

@@ -269,8 +269,7 @@ static double stable_step(const preset *scene, plan_precision precision)
 static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
     set_links(scene, plan->stiffness, damping);
-    const char *what;
-    const double allowed = plan_fraction(scene, NAN, &what);
+    const double allowed = plan_fraction(scene, NAN, NULL);
     for (int p = 0; p < plan_precisions; p++) {
         plan_steps *s = &plan->steps[p];
         s->stable_step = stable_step(scene, (plan_precision)p);

@@ -278,10 +278,11 @@ double plan_fraction(const preset *scene, double duration, const char **what)
         if (d->link[i].stiffness > 0 && d->link[i].flags == 0)
             ratio = fmin(ratio, d->link[i].damping / sqrt(2 * d->link[i].stiffness * heaviest));
     const bool rope = (double)d->links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
-    *what = ratio >= damped     ? "damped links"
-            : drags && !rope    ? "a sheet or a block with drag"
-            : drags             ? "a rope with drag"
-            : duration > minute ? "a long run without damping"
-                                : "smooth motion without damping (0.25 if it is violent or long)";
+    if (what != NULL)
+        *what = ratio >= damped     ? "damped links"
+                : drags && !rope    ? "a sheet or a block with drag"
+                : drags             ? "a rope with drag"
+                : duration > minute ? "a long run without damping"
+                                    : "smooth motion without damping (0.25 if it is violent or long)";
     return ratio >= damped || (drags && !rope) ? 0.9 : duration > minute && !drags ? 0.25 : 0.5;
 }

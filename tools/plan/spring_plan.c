@@ -101,8 +101,8 @@ static const cli_program program = {
                "uncertainty and stable_substeps (the fewest whose step is below the stable step; 0: none).\n\n"
                "With --sag: limit (scene or link, whose stretch is S or at most 0.1 % of S less), stiffness_N_per_m,\n"
                "scene_stretch and link_stretch (the stretch of the scene and of its most stretched link, at rest),\n"
-               "stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s with this fraction of the\n"
-               "stable step), dt_s, time_per_frame_s (on this machine) and precision (double or float). The rows\n"
+               "stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that this rule\n"
+               "allows), dt_s, time_per_frame_s (on this machine) and precision (double or float). The rows\n"
                "of float have the stiffness and the stretch of double, and steps and a time of their own. A scene\n"
                "whose height depends on more than the stretch of its links, such as a hammock, has only the rows for\n"
                "link.",

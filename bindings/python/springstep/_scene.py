@@ -741,9 +741,9 @@ class Scene(Generic[F]):
 
         status = self._guard.short(load)
         if status:
-            of_another = status == lib.SPRING_EMISMATCH
             invalid("state", f"{len(state)} bytes",
-                    reason="the state of a scene with another definition" if of_another else "damaged, truncated, or with custom bodies at other places")
+                    reason="the state of a scene with another definition" if status == lib.SPRING_EMISMATCH
+                    else "damaged, truncated, or with custom bodies at other places")
 
     def set_time(self, t: float) -> None:
         """Set the time. Colliders stay where they are, and nothing else changes.
