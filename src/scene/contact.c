@@ -42,6 +42,8 @@
 
 #include <math.h>
 
+#include "../simd/size_begin.h"
+
 enum {
     impact_iterations = 12, /* of step 2 */
     friction_passes = 2,    /* of step 4: friction changes where the path ends, and so the impulse */
@@ -1254,8 +1256,6 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- queries */
-
-#include "../simd/size_begin.h"
 
 unsigned spring_contact_surfaces(const contact_body *b, const contact_particle *p, bool at_end, vector3 x,
                                  double epsilon, contact_surface surface[3])

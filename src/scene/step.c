@@ -24,6 +24,8 @@ double spring_scene_time(const spring_scene *s)
     return s != NULL ? time_of(s) : (double)NAN;
 }
 
+#include "../simd/size_begin.h"
+
 /* Sets padding lanes to 0 after a failure: a NaN there would make later steps with longer vectors fail, and no caller can
    overwrite it. */
 static void clear_padding(spring_scene *s, uint32_t buffer)
@@ -47,6 +49,8 @@ static void invalidate(spring_scene *s)
     scene_clear_touched(s, 0, s->layout.particles);
     s->lost = true;
 }
+
+#include "../simd/size_end.h"
 
 /* Returns why a call cannot advance the scene, or SPRING_OK. */
 static spring_status check_advance(const spring_scene *s, spring_method m, double dt)
@@ -188,6 +192,8 @@ spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, 
 
 /* ---------------------------------------------------------------------------------------------------------- at rest */
 
+#include "../simd/size_begin.h"
+
 /* The forces at the state. The cache stays as it is, so that a later step does not depend on this query. */
 static const scalar *forces_of_state(spring_scene *s)
 {
@@ -227,3 +233,5 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
     }
     return true;
 }
+
+#include "../simd/size_end.h"

@@ -9,6 +9,8 @@
 #include "runge_kutta.h"
 #include "../spring/roots.h"
 
+#include "../simd/size_begin.h"
+
 /* x1 = x + h v;  v1 = v + h a(x, v) */
 static scene_outcome scene_euler(scene_step *s)
 {
@@ -44,6 +46,8 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
     return (root - excess) / b->stiffness;
 }
 
+#include "../simd/size_end.h"
+
 /* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one fused pass over
    the particles, with the results of two passes.
    If forces other than drag depend on velocities, they are evaluated at predicted velocities v*. Let v' be the velocity
@@ -76,6 +80,8 @@ static scene_outcome scene_leapfrog(scene_step *s)
     };
 }
 
+#include "../simd/size_begin.h"
+
 static double scene_leapfrog_limit(const scene_bounds *b)
 {
     return 2 / spring_sqrt(b->stiffness);
@@ -106,6 +112,8 @@ static double scene_srkn6_limit(const scene_bounds *b)
 {
     return fmin(9.07 / spring_sqrt(b->stiffness), 20 / b->damping);
 }
+
+#include "../simd/size_end.h"
 
 SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
     [SPRING_EULER] = {.step = scene_euler, .stable_step = scene_euler_limit},
