@@ -89,13 +89,16 @@ static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t si
     return to;
 }
 
-/* Advances the springs that do not fill a group. Copies of the first fill it up, so that the loop still ends early when
-   no spring is finite any more. */
+/* Advances the springs that do not fill a group, with the narrowest kernels whose group holds them. Copies of the first
+   fill it up, so that the loop still ends early when no spring is finite any more. */
 static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, const batch_run *all, size_t first)
 {
     scalar x[largest_group], v[largest_group];
     scalar omega2[largest_group], gamma[largest_group], accel[largest_group], target[largest_group];
-    const size_t size = kernels->group_size, count = b->count - first;
+    const size_t count = b->count - first;
+    while (kernels->narrower != NULL && count <= kernels->narrower->group_size)
+        kernels = kernels->narrower;
+    const size_t size = kernels->group_size;
     batch_run tail = *all;
     tail.count = size;
     tail.x = filled_up(x, b->x + first, count, size);

@@ -32,8 +32,9 @@ typedef struct batch_run {
 } batch_run;
 
 typedef struct batch_kernels {
-    size_t group_size;                   /* springs that are advanced together */
-    bool (*advance)(const batch_run *b); /* false: at least one spring kept its state */
+    size_t group_size;                    /* springs that are advanced together */
+    bool (*advance)(const batch_run *b);  /* false: at least one spring kept its state */
+    const struct batch_kernels *narrower; /* with smaller groups; NULL: there are none */
 } batch_kernels;
 
 /* Named by the bits of a SIMD vector. */

@@ -14,7 +14,15 @@
 
 #include "springs_tmpl.h"
 
-SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .advance = advance_springs};
+SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {
+    .group_size = group,
+    .advance = advance_springs,
+#if SPRING_VECTOR == 64
+    .narrower = &spring_batch_v256,
+#elif SPRING_VECTOR == 32 && SPRING_HAS_V128
+    .narrower = &spring_batch_v128,
+#endif
+};
 
 #include "../simd/target_end.h"
 #endif

@@ -103,14 +103,15 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     return all;
 }
 
-/* Only leapfrog has a loop over single steps for each set of features. */
+/* Only leapfrog has a loop over single steps for each set of features, and none with vectors of 64 bytes. */
 SPRING_INLINE bool advance_by(const batch_run *b, method_prepare *prepare, method_start *start, method_step *step)
 {
     const bool damped = b->gamma.first != NULL, loaded = b->accel.first != NULL;
     if (b->n > 1 || SPRING_COMPACT)
         return advance_groups(b, prepare, start, step, damped, loaded);
-    return step == leapfrog_step ? SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step)
-                                 : advance_once(b, prepare, start, step, damped, loaded);
+    return step == leapfrog_step && SPRING_VECTOR < 64
+               ? SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step)
+               : advance_once(b, prepare, start, step, damped, loaded);
 }
 
 static bool advance_each_exactly(const batch_run *b)
@@ -154,8 +155,8 @@ static bool advance_springs(const batch_run *b)
 #undef STEP_METHOD
     return advance_exactly(b);
 #else
-    /* Several steps of leapfrog, and exact solutions with different coefficients, gain most from vectors of 64 bytes. */
-    if (b->method == SPRING_LEAPFROG && b->n > 1)
+    /* Leapfrog, and exact solutions with different coefficients, gain most from vectors of 64 bytes. */
+    if (b->method == SPRING_LEAPFROG)
         return advance_by(b, leapfrog_prepare, leapfrog_force, leapfrog_step);
     if (b->method == SPRING_EXACT && b->propagator == NULL)
         return advance_each_exactly(b);
