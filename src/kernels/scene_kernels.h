@@ -6,6 +6,7 @@
 #define SPRINGSTEP_SCENE_KERNELS_H
 
 #include "../scene/contact.h"
+#include "../scene/layout.h"
 #include "../simd/scalar.h"
 #include "../simd/targets.h"
 #include "single_precision.h"
@@ -14,15 +15,9 @@
 #include <stddef.h>
 
 enum {
-    padding = 16,       /* elements of the longest SIMD vector; every array has as many before and after it */
-    most_bands = 32,    /* a block with shear and bend springs has 16 */
-    nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
-    tile = 64,          /* slots of a band whose forces are computed together; they fit the first-level cache */
+    nystrom_stages = 7,                  /* of a Runge-Kutta-Nystrom method, after the first */
     contact_chunk = 256 / sizeof(scalar) /* particles whose contacts are found together; limited by the stack */
 };
-_Static_assert(tile % padding == 0, "a tile consists of whole vectors");
-
-static const uint32_t no_slot = UINT32_MAX;
 
 /* Which terms of the law of a link are computed. */
 typedef enum link_terms {

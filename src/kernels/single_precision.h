@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Batches and scenes are written for double. With SPRING_FLOAT, these names turn the same source into the
-   single-precision version. */
+   single-precision version. Functions on definitions are compiled once: see scene/definition.h. */
 #ifndef SPRINGSTEP_SINGLE_PRECISION_H
 #define SPRINGSTEP_SINGLE_PRECISION_H
 
@@ -8,6 +8,8 @@
 #include <springstep/scene.h>
 
 #ifdef SPRING_FLOAT
+typedef spring_scenef_def public_scene_def;
+
 #define spring_batch                spring_batchf
 #define spring_batch_advance        spring_batchf_advance
 #define spring_batch_advance_with   spring_batchf_advance_with
@@ -31,7 +33,6 @@
 #define spring_scene_bytes              spring_scenef_bytes
 #define spring_scene_check              spring_scenef_check
 #define spring_scene_check_colliders    spring_scenef_check_colliders
-#define spring_scene_def                spring_scenef_def
 #define spring_scene_drive              spring_scenef_drive
 #define spring_scene_energy             spring_scenef_energy
 #define spring_scene_find_bounds        spring_scenef_find_bounds
@@ -75,6 +76,8 @@
 #define spring_scene_load               spring_scenef_load
 #define spring_scene_save               spring_scenef_save
 #define spring_scene_set_time           spring_scenef_set_time
+#else
+typedef spring_scene_def public_scene_def;
 #endif
 
 #endif

@@ -7,69 +7,9 @@
 #define SPRINGSTEP_BLOCK_H
 
 #include "../kernels/scene_kernels.h"
+#include "method_limits.h"
 #include "../simd/arithmetic.h"
 #include "../simd/compiler.h"
-
-/* The arrays, in the order of their offsets. layout.c says which scenes have them, and how many elements. */
-typedef enum scene_array {
-    ARRAY_X_0, /* [m] positions of all particles on all axes, in two buffers: see step.c */
-    ARRAY_V_0, /* [m/s] velocities */
-    ARRAY_X_1,
-    ARRAY_V_1,
-    ARRAY_FORCE_0,        /* [N] forces at the state in buffer 0 */
-    ARRAY_FORCE_1,        /* [N] at the state in buffer 1; ARRAY_FORCE_0 if no forces depend on a predicted velocity */
-    ARRAY_PREDICTED,      /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
-    ARRAY_STAGES,         /* quantities that Runge-Kutta methods store */
-    ARRAY_INVERSE_MASS,   /* [1/kg] 0: pinned */
-    ARRAY_FREE_MASS,      /* [1/kg] inverse mass of a particle when it is not pinned; 0: its mass is not valid */
-    ARRAY_MASS_FACTORS,   /* numbers that RKN8 and SRKN6 store for each mass, with drag */
-    ARRAY_OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
-    ARRAY_RINGS,          /* [N] bands: ring buffers of forces; see kernels/bands_tmpl.h */
-    ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
-    ARRAY_BAND_REST,      /* [m] */
-    ARRAY_BAND_DAMPING,   /* [N s/m] */
-    ARRAY_LINK_A,         /* unbanded links: particles at the ends */
-    ARRAY_LINK_B,
-    ARRAY_LINK_STIFFNESS, /* [N/m] */
-    ARRAY_LINK_REST,      /* [m] */
-    ARRAY_LINK_DAMPING,   /* [N s/m] */
-    ARRAY_FLAGS,          /* by link: spring_link.flags; only if one is not 0 */
-    ARRAY_TETHERS,        /* tether */
-    ARRAY_WEIGHTED,       /* stored_weighted */
-    ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
-    ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
-    ARRAY_ROOTS,   /* scene_band.root and unbanded_links.root, by slot like ARRAY_SLOTS */
-    ARRAY_FROZEN,  /* direction_scale, then turning, likewise */
-    ARRAY_KICK,    /* see kick_storage() */
-    ARRAY_PRESSED, /* pressed_particle: see exponential_kick.h */
-    ARRAY_SUMS,    /* by particle: work space of the stable step and of spring_scene_find_roots() */
-    ARRAY_HELD,    /* [N] held forces: no call but spring_scene_set() changes them */
-    ARRAY_COLLIDERS, /* spring_collider, as set */
-    ARRAY_PLACED,    /* contact_body, in the current step */
-    ARRAY_BOUNDS,    /* one collider_bounds: the same, to find particles that are near */
-    ARRAY_IMPULSES,  /* spring_impulse of each collider, in the last call, then in the present call */
-    ARRAY_ORIGINS,   /* [m] points that impulses of the present call are about: double[3] of each collider */
-    ARRAY_RADIUS,    /* [m] by particle; absent: particle_radius */
-    ARRAY_FRICTION,  /* by particle: factor of the friction of colliders */
-    ARRAY_BITS,      /* by particle: which colliders it may touch */
-    ARRAY_TOUCHED_0, /* by particle: bits of the colliders that it touches in buffer 0 */
-    ARRAY_TOUCHED_1,
-    ARRAY_COUNT
-} scene_array;
-
-/* What a band consists of. Bands of tethers are found after those of other links, and bands of three-point links last,
-   so that the former do not change how the latter are added up. */
-typedef enum band_kind { BAND_OF_LINKS, BAND_OF_TETHERS, BAND_OF_THREE_POINTS } band_kind;
-
-/* A band: its links, and where its slots, coefficients and ring start in the arrays of all bands. */
-typedef struct band_layout {
-    uint32_t offset;     /* upper end of a link minus its lower end; three points: from one to the next */
-    uint32_t first, end; /* range of the lower ends */
-    uint8_t kind;        /* band_kind */
-    bool equal;          /* all links are equal and stay so: one vector of coefficients for all slots */
-    size_t slots, coefficients, ring_start;
-    size_t ring; /* see scene_band */
-} band_layout;
 
 /* The coefficients of a tether. While it does not act, ARRAY_BAND_... and ARRAY_LINK_... have 0 instead. */
 typedef struct tether {
@@ -89,34 +29,6 @@ typedef struct pressed_particle {
     scalar outwards[3]; /* sum of the normals */
     scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
 } pressed_particle;
-
-typedef struct scene_layout {
-    uint32_t axes, flags, methods, colliders;
-    size_t particles, links, weighted, tethers;
-    size_t stride;   /* elements from one axis of a quantity to the next */
-    size_t quantity; /* elements of a quantity */
-    size_t masses;   /* elements of a quantity that depends on the mass */
-    uint32_t bands;
-    uint32_t three_point_bands;                      /* the last ones of these */
-    size_t reach;                                    /* largest distance of the particles of a banded link */
-    band_layout band[most_bands];                    /* by kind, tethers among other links, and ascending offset */
-    size_t band_slots, band_coefficients, band_ring; /* of all bands */
-    size_t unbanded;                                 /* links in no band, without weighted links */
-    size_t loose;                                    /* weighted links that are defined to be in no band */
-    size_t offset[ARRAY_COUNT];                      /* [bytes] from the start of the block; SIZE_MAX: absent */
-    uint64_t bytes;                                  /* of the block; may exceed the address space */
-} scene_layout;
-
-/* Bounds from which the stable steps follow; see stable_step.c. Each motion u'' = -omega2 u - gamma u' of the scene
-   about rest has omega2 <= stiffness, gamma <= damping, and with drag gamma/omega2 >= drag/stiffness_sum. */
-typedef struct scene_bounds {
-    double stiffness;     /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle; 1/mass to a pin */
-    double link_damping;  /* [1/s]   the same for damping */
-    double damping;       /* [1/s]   the same for damping, plus drag/mass */
-    double stiffness_sum; /* [N/m]   like stiffness, without the mass */
-    double drag;          /* [N s/m] */
-    double least_drag;    /* [1/s]   drag divided by the largest mass */
-} scene_bounds;
 
 /* The forces that a step keeps for the next step, in the force array of the buffer that holds the state. Only steps
    write the array and set this value; scene_drop_forces() clears it when something changes on which forces depend. */

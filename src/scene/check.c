@@ -1,9 +1,59 @@
 /* SPDX-License-Identifier: MIT */
 /* Checks of a scene definition, in the order of its fields: the first field that is not valid is reported. */
+#include "contact.h"
 #include "definition.h"
-#include "steppers.h"
+#include "method_limits.h"
 
 #include "../simd/size_begin.h"
+
+/* ------------------------------------------------------------------------------------------------------------- links */
+
+const char *spring_link_invalid_field(const spring_link *link, size_t number)
+{
+    return !value_not_negative(number, link->rest)        ? "link.rest"
+           : !value_not_negative(number, link->stiffness) ? "link.stiffness"
+           : !value_not_negative(number, link->damping)   ? "link.damping"
+                                                          : NULL;
+}
+
+const char *spring_link_overflows(const spring_link *link, size_t number, double inverse_a, double inverse_b)
+{
+    const double lightest = fmax(inverse_a, inverse_b);
+    return !value_fits(number, 2 * (link->stiffness * lightest)) ? "link.stiffness"
+           : !value_fits(number, 2 * (link->damping * lightest)) ? "link.damping"
+                                                                 : NULL;
+}
+
+const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t number)
+{
+    const double tolerance = 1e-12; /* of the sum, relative to the largest weight: rounding errors of decimal numbers */
+    double sum = 0, largest = 0;
+    for (int i = 0; i < 4; i++) {
+        if (!value_fits(number, link->weight[i]))
+            return "weighted_link.weight";
+        sum += link->weight[i];
+        largest = fmax(largest, fabs(link->weight[i]));
+    }
+    return !(fabs(sum) <= tolerance * largest)            ? "weighted_link.weight"
+           : !value_not_negative(number, link->rest)      ? "weighted_link.rest"
+           : !value_not_negative(number, link->stiffness) ? "weighted_link.stiffness"
+           : !value_not_negative(number, link->damping)   ? "weighted_link.damping"
+                                                          : NULL;
+}
+
+const char *spring_weighted_overflows(const spring_weighted_link *link, size_t number, const double inverse_mass[4])
+{
+    for (int i = 0; i < 4; i++) {
+        const double row = weighted_row(link->weight, inverse_mass, i);
+        if (!value_fits(number, link->stiffness * row) || !value_fits(number, link->stiffness * row * inverse_mass[i]))
+            return "weighted_link.stiffness";
+        if (!value_fits(number, link->damping * row) || !value_fits(number, link->damping * row * inverse_mass[i]))
+            return "weighted_link.damping";
+    }
+    return NULL;
+}
+
+/* -------------------------------------------------------------------------------------------------------- definition */
 
 typedef struct def_error {
     spring_status status;
@@ -21,21 +71,21 @@ static def_error invalid(const char *field, size_t index)
 static def_error check_methods(uint32_t methods)
 {
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if ((methods & 1u << m) != 0 && spring_scene_steppers[m].step == NULL)
+        if ((methods & 1u << m) != 0 && spring_method_limits[m].stable_step == NULL)
             return (def_error){SPRING_EUNSUPPORTED, "methods", 0};
     return methods >> SPRING_METHOD_COUNT == 0 ? no_error : invalid("methods", 0);
 }
 
-static def_error check_contacts(const spring_scene_def *def)
+static def_error check_contacts(const spring_scene_def *def, size_t number)
 {
     if (def->colliders > 0 && axes_of(def) == 1)
         return (def_error){SPRING_EUNSUPPORTED, "colliders", 0};
     if (def->colliders > most_colliders)
         return (def_error){SPRING_ERANGE, "colliders", 0};
-    return scene_not_negative(def->particle_radius) ? no_error : invalid("particle_radius", 0);
+    return value_not_negative(number, def->particle_radius) ? no_error : invalid("particle_radius", 0);
 }
 
-static def_error check_head(const spring_scene_def *def)
+static def_error check_head(const spring_scene_def *def, size_t number)
 {
     const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY |
                            SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES;
@@ -61,39 +111,39 @@ static def_error check_head(const spring_scene_def *def)
         return invalid("link", 0);
     if (def->weighted_link == NULL && def->weighted_links > 0)
         return invalid("weighted_link", 0);
-    if (def->mass == NULL && def->mass_all != 0 && !scene_mass_valid(def->mass_all))
+    if (def->mass == NULL && def->mass_all != 0 && !mass_valid(number, def->mass_all))
         return invalid("mass_all", 0);
     for (uint32_t a = 0; a < axes_of(def); a++)
-        if (!scene_fits(def->gravity[a]))
+        if (!value_fits(number, def->gravity[a]))
             return invalid("gravity", a);
-    if (!scene_not_negative(def->drag))
+    if (!value_not_negative(number, def->drag))
         return invalid("drag", 0);
-    return scene_not_negative(def->max_speed) ? check_contacts(def) : invalid("max_speed", 0);
+    return value_not_negative(number, def->max_speed) ? check_contacts(def, number) : invalid("max_speed", 0);
 }
 
-static def_error check_particles(const spring_scene_def *def)
+static def_error check_particles(const spring_scene_def *def, size_t number)
 {
     const uint32_t axes = axes_of(def);
     for (size_t i = 0; i < def->particles; i++) {
         for (uint32_t a = 0; a < axes; a++) {
-            if (!scene_fits(def->position[i * axes + a]))
+            if (!value_fits(number, def->position[i * axes + a]))
                 return invalid("position", i);
-            if (def->velocity != NULL && !scene_fits(def->velocity[i * axes + a]))
+            if (def->velocity != NULL && !value_fits(number, def->velocity[i * axes + a]))
                 return invalid("velocity", i);
         }
-        if (!is_pinned(def, i) && !scene_mass_valid(mass_of(def, i)))
+        if (!is_pinned(def, i) && !mass_valid(number, mass_of(def, i)))
             return invalid("mass", i);
-        if (!scene_fits(def->drag * (double)inverse_mass_of(def, i)))
+        if (!value_fits(number, def->drag * inverse_mass_of(def, number, i)))
             return invalid("drag", i);
-        if (def->colliders > 0 && def->radius != NULL && !scene_not_negative(def->radius[i]))
+        if (def->colliders > 0 && def->radius != NULL && !value_not_negative(number, def->radius[i]))
             return invalid("radius", i);
-        if (def->colliders > 0 && def->friction != NULL && !scene_not_negative(def->friction[i]))
+        if (def->colliders > 0 && def->friction != NULL && !value_not_negative(number, def->friction[i]))
             return invalid("friction", i);
     }
     return no_error;
 }
 
-static def_error check_links(const spring_scene_def *def)
+static def_error check_links(const spring_scene_def *def, size_t number)
 {
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
@@ -107,17 +157,17 @@ static def_error check_links(const spring_scene_def *def)
             return invalid("link.flags", i);
         if (link->flags != 0 && axes_of(def) == 1)
             return (def_error){SPRING_EUNSUPPORTED, "link.flags", i};
-        const char *field = scene_link_invalid_field(link);
+        const char *field = spring_link_invalid_field(link, number);
         if (field == NULL)
-            field = scene_link_overflows(link, (double)inverse_mass_of(def, link->a),
-                                         (double)inverse_mass_of(def, link->b));
+            field = spring_link_overflows(link, number, inverse_mass_of(def, number, link->a),
+                                          inverse_mass_of(def, number, link->b));
         if (field != NULL)
             return invalid(field, i);
     }
     return no_error;
 }
 
-static def_error check_weighted_links(const spring_scene_def *def)
+static def_error check_weighted_links(const spring_scene_def *def, size_t number)
 {
     for (size_t i = 0; i < def->weighted_links; i++) {
         const spring_weighted_link *link = &def->weighted_link[i];
@@ -130,11 +180,11 @@ static def_error check_weighted_links(const spring_scene_def *def)
             for (int before = 0; before < k; before++)
                 if (link->weight[before] != 0 && link->particle[before] == link->particle[k])
                     return invalid("weighted_link.particle", i);
-            inverse[k] = (double)inverse_mass_of(def, link->particle[k]);
+            inverse[k] = inverse_mass_of(def, number, link->particle[k]);
         }
-        const char *field = weighted_invalid_field(link);
+        const char *field = spring_weighted_invalid_field(link, number);
         if (field == NULL)
-            field = weighted_overflows(link, inverse);
+            field = spring_weighted_overflows(link, number, inverse);
         if (field != NULL)
             return invalid(field, i);
     }
@@ -154,25 +204,25 @@ static def_error check_velocities(const spring_scene_def *def)
     return no_error;
 }
 
-static def_error check(const spring_scene_def *def)
+static def_error check(const spring_scene_def *def, size_t number)
 {
     if (def == NULL)
         return invalid("def", 0);
-    def_error found = check_head(def);
+    def_error found = check_head(def, number);
     if (found.status == SPRING_OK)
-        found = check_particles(def);
+        found = check_particles(def, number);
     if (found.status == SPRING_OK)
-        found = check_links(def);
+        found = check_links(def, number);
     if (found.status == SPRING_OK)
-        found = check_weighted_links(def);
+        found = check_weighted_links(def, number);
     if (found.status == SPRING_OK)
         found = check_velocities(def);
     return found;
 }
 
-spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index)
+spring_status spring_definition_check(const spring_scene_def *def, size_t number, const char **field, size_t *index)
 {
-    const def_error found = check(def);
+    const def_error found = check(def, number);
     if (field != NULL)
         *field = found.field;
     if (index != NULL)

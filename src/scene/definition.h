@@ -1,9 +1,40 @@
 /* SPDX-License-Identifier: MIT */
-/* The values of a scene definition, with its defaults. */
+/*
+ * The definition of a scene of either precision: its values with their defaults, and functions that are compiled once for
+ * both precisions. They have the number of bytes of a number of the scene, sizeof(scalar), as an argument `number`.
+ */
 #ifndef SPRINGSTEP_DEFINITION_H
 #define SPRINGSTEP_DEFINITION_H
 
-#include "weighted_links.h"
+#include "layout.h"
+#include "../simd/arithmetic.h"
+
+#include <math.h>
+
+#include <springstep/scene.h>
+
+/* ------------------------------------------------------------------------------------------------------------ values */
+
+/* A value as the scene stores it. */
+static inline double stored_value(size_t number, double value)
+{
+    return number == sizeof(float) ? (double)(float)value : value;
+}
+
+static inline bool value_fits(size_t number, double value) /* finite in the precision of the scene */
+{
+    return spring_finite(stored_value(number, value));
+}
+
+static inline bool value_not_negative(size_t number, double value)
+{
+    return value >= 0 && value_fits(number, value);
+}
+
+static inline bool mass_valid(size_t number, double mass)
+{
+    return mass > 0 && value_fits(number, mass) && value_fits(number, 1 / mass);
+}
 
 static inline uint32_t axes_of(const spring_scene_def *def)
 {
@@ -21,9 +52,9 @@ static inline double mass_of(const spring_scene_def *def, size_t i)
 }
 
 /* 0: pinned */
-static inline scalar inverse_mass_of(const spring_scene_def *def, size_t i)
+static inline double inverse_mass_of(const spring_scene_def *def, size_t number, size_t i)
 {
-    return is_pinned(def, i) ? 0 : (scalar)(1 / mass_of(def, i));
+    return is_pinned(def, i) ? 0 : stored_value(number, 1 / mass_of(def, i));
 }
 
 /* A tether acts while exactly one of its ends is pinned. */
@@ -39,6 +70,16 @@ static inline double link_row(const spring_scene_def *def, const spring_link *li
     return is_pinned(def, end) || !defined_link_acts(def, link) ? 0
            : is_pinned(def, other)                              ? link->stiffness
                                                                 : 2 * link->stiffness;
+}
+
+/* |weight| of a particle times the sum of |weight| over the particles that are not pinned. This times the stiffness
+   bounds the row of the stiffness matrix, as 2 stiffness or 1 stiffness does for a link. */
+static inline double weighted_row(const double weight[4], const double inverse_mass[4], int i)
+{
+    double sum = 0;
+    for (int j = 0; j < 4; j++)
+        sum += inverse_mass[j] > 0 ? fabs(weight[j]) : 0;
+    return fabs(weight[i]) * sum;
 }
 
 /* What a weighted link adds to the row sum of its particle[i] [N/m]; 0 for a pinned particle. */
@@ -69,5 +110,49 @@ static inline uint32_t link_flags(const spring_scene_def *def)
         flags |= def->link[i].flags;
     return flags;
 }
+
+/* A link whose weights are (w, -2w, w), at particles with a constant offset, and whose rest length is 0. */
+typedef struct three_points {
+    uint32_t lower, offset; /* offset: 0 if the link is none */
+    double weight;          /* w */
+} three_points;
+
+static inline three_points three_points_of(const spring_weighted_link *link)
+{
+    uint32_t particle[4] = {0};
+    double weight[4] = {0};
+    int points = 0;
+    for (int i = 0; i < 4; i++)
+        if (link->weight[i] != 0) {
+            particle[points] = link->particle[i];
+            weight[points++] = link->weight[i];
+        }
+    const bool up = particle[1] > particle[0];
+    const uint32_t offset = up ? particle[1] - particle[0] : particle[0] - particle[1];
+    const bool evenly = up ? particle[2] > particle[1] && particle[2] - particle[1] == offset
+                           : particle[1] > particle[2] && particle[1] - particle[2] == offset;
+    const bool fits = points == 3 && evenly && weight[0] == weight[2] && weight[1] == -2 * weight[0] && link->rest == 0;
+    return (three_points){up ? particle[0] : particle[2], fits ? offset : 0, weight[0]};
+}
+
+/* ------------------------------------------------------------------------------------------- functions on definitions */
+
+SPRING_INTERNAL spring_status spring_definition_check(const spring_scene_def *def, size_t number, const char **field,
+                                                      size_t *index);
+SPRING_INTERNAL spring_status spring_definition_soften(const spring_scene_def *def, size_t number, double dt,
+                                                       double fraction, spring_link *link);
+SPRING_INTERNAL spring_status spring_definition_tethers(const spring_scene_def *def, size_t number, double fraction,
+                                                        double slack, spring_link *out, size_t *count, uint32_t *work,
+                                                        double *distance);
+
+/* The field of a link that is not valid for any masses; NULL: none. */
+SPRING_INTERNAL const char *spring_link_invalid_field(const spring_link *link, size_t number);
+SPRING_INTERNAL const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t number);
+
+/* The field that is too large for the masses of its particles; NULL: none. */
+SPRING_INTERNAL const char *spring_link_overflows(const spring_link *link, size_t number, double inverse_a,
+                                                  double inverse_b);
+SPRING_INTERNAL const char *spring_weighted_overflows(const spring_weighted_link *link, size_t number,
+                                                      const double inverse_mass[4]);
 
 #endif

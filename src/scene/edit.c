@@ -9,8 +9,8 @@ static bool replaces_link(const spring_scene *s, size_t index, const spring_link
 {
     const stored_link old = scene_link(s, index);
     const bool same_ends = (link->a == old.a && link->b == old.b) || (link->a == old.b && link->b == old.a);
-    return same_ends && scene_link_invalid_field(link) == NULL &&
-           scene_link_overflows(link, inverse_mass_at(s, old.a), inverse_mass_at(s, old.b)) == NULL;
+    return same_ends && spring_link_invalid_field(link, sizeof(scalar)) == NULL &&
+           spring_link_overflows(link, sizeof(scalar), inverse_mass_at(s, old.a), inverse_mass_at(s, old.b)) == NULL;
 }
 
 spring_status spring_scene_set_links(spring_scene *s, size_t first, size_t count, const spring_link *link)
@@ -105,15 +105,16 @@ static bool proposal_valid(const spring_scene *s, const proposal *p)
     bool grows = false; /* some inverse mass */
     for (size_t i = p->first; i < p->first + p->count; i++) {
         const double inverse = proposed_inverse_mass(s, p, i);
-        if (p->mass != NULL && !scene_mass_valid(p->mass[i - p->first]))
+        if (p->mass != NULL && !mass_valid(sizeof(scalar), p->mass[i - p->first]))
             return false;
-        if (!will_be_pinned(s, p, i) && (inverse == 0 || !scene_fits(s->drag * inverse)))
+        if (!will_be_pinned(s, p, i) && (inverse == 0 || !value_fits(sizeof(scalar), s->drag * inverse)))
             return false;
         grows = grows || inverse > inverse_mass_at(s, i);
     }
     spring_link link;
     for (size_t i = 0; grows && spring_scene_get_link(s, i, &link) == SPRING_OK; i++)
-        if (scene_link_overflows(&link, proposed_inverse_mass(s, p, link.a), proposed_inverse_mass(s, p, link.b)))
+        if (spring_link_overflows(&link, sizeof(scalar), proposed_inverse_mass(s, p, link.a),
+                                  proposed_inverse_mass(s, p, link.b)))
             return false;
     const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     for (size_t i = 0; grows && i < s->layout.weighted; i++) {
@@ -121,7 +122,7 @@ static bool proposal_valid(const spring_scene *s, const proposal *p)
         double inverse[4];
         for (int k = 0; k < 4; k++)
             inverse[k] = now.weight[k] != 0 ? proposed_inverse_mass(s, p, now.particle[k]) : 0;
-        if (weighted_overflows(&now, inverse) != NULL)
+        if (spring_weighted_overflows(&now, sizeof(scalar), inverse) != NULL)
             return false;
     }
     return true;

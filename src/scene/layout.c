@@ -10,7 +10,7 @@
  */
 #include "definition.h"
 #include "state_numbers.h"
-#include "steppers.h"
+#include "weighted_links.h"
 
 #include "../simd/size_begin.h"
 
@@ -141,8 +141,8 @@ static uint32_t default_methods(void)
 {
     uint32_t methods = 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if (spring_scene_steppers[m].step != NULL && spring_scene_steppers[m].stages == 0 &&
-            spring_scene_steppers[m].mass_factors == 0)
+        if (spring_method_limits[m].stable_step != NULL && spring_method_limits[m].quantities == 0 &&
+            spring_method_limits[m].factors == 0)
             methods |= 1u << m;
     return methods;
 }
@@ -155,19 +155,19 @@ static uint32_t methods_of(const spring_scene_def *def)
 /* Storage for the methods of a scene: the largest that one of them needs. */
 typedef struct storage_needs {
     bool predicts;
-    unsigned stages, mass_factors;
+    unsigned quantities, factors;
 } storage_needs;
 
 static storage_needs needs_of(uint32_t methods)
 {
     storage_needs most = {0};
     for (int m = 0; m < SPRING_METHOD_COUNT; m++) {
-        const scene_stepper *stepper = &spring_scene_steppers[m];
+        const method_limits *method = &spring_method_limits[m];
         if ((methods & 1u << m) == 0)
             continue;
-        most.predicts = most.predicts || stepper->predicts;
-        most.stages = stepper->stages > most.stages ? stepper->stages : most.stages;
-        most.mass_factors = stepper->mass_factors > most.mass_factors ? stepper->mass_factors : most.mass_factors;
+        most.predicts = most.predicts || method->predicts;
+        most.quantities = method->quantities > most.quantities ? method->quantities : most.quantities;
+        most.factors = method->factors > most.factors ? method->factors : most.factors;
     }
     return most;
 }
@@ -218,10 +218,10 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_FORCE_0] = {number, quantity, true},
         [ARRAY_FORCE_1] = {number, quantity, predicts},
         [ARRAY_PREDICTED] = {number, quantity, predicts && damped && reads_later},
-        [ARRAY_STAGES] = {number, needs.stages * quantity, needs.stages > 0},
+        [ARRAY_STAGES] = {number, needs.quantities * quantity, needs.quantities > 0},
         [ARRAY_INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
         [ARRAY_FREE_MASS] = {number, l->particles, editable},
-        [ARRAY_MASS_FACTORS] = {number, needs.mass_factors * l->masses, def->drag > 0 && needs.mass_factors > 0},
+        [ARRAY_MASS_FACTORS] = {number, needs.factors * l->masses, def->drag > 0 && needs.factors > 0},
         [ARRAY_OCCUPIED] = {1, l->band_slots, l->bands > 0},
         [ARRAY_RINGS] = {number, l->band_ring, l->bands > 0},
         [ARRAY_BAND_STIFFNESS] = {number, coefficients, l->bands > 0},
@@ -286,7 +286,7 @@ static void align_arrays(scene_layout *l, const void *memory)
 
 static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
 {
-    const spring_status status = spring_scene_check(def, NULL, NULL);
+    const spring_status status = spring_definition_check(def, sizeof(scalar), NULL, NULL);
     if (status != SPRING_OK)
         return status;
     *l = (scene_layout){
@@ -313,8 +313,23 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
     return l->bytes <= SIZE_MAX ? SPRING_OK : SPRING_ERANGE;
 }
 
-spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes)
+_Static_assert(sizeof(public_scene_def) == sizeof(spring_scene_def), "definitions have the same fields");
+_Static_assert(offsetof(public_scene_def, mask) == offsetof(spring_scene_def, mask),
+               "definitions have the same fields");
+
+/* Copies a definition to the type of scenes in double, which functions for both precisions have. */
+static const spring_scene_def *common_definition(const public_scene_def *def, spring_scene_def *copy)
 {
+    if (def == NULL)
+        return NULL;
+    memcpy(copy, def, sizeof *copy);
+    return copy;
+}
+
+spring_status spring_scene_bytes(const public_scene_def *definition, size_t *bytes)
+{
+    spring_scene_def copy;
+    const spring_scene_def *const def = common_definition(definition, &copy);
     if (bytes == NULL)
         return SPRING_EINVAL;
     scene_layout layout;
@@ -331,7 +346,7 @@ static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
 {
     const double all = def->mass_all == 0 ? 1 : def->mass_all;
     const double mass = def->mass != NULL && def->mass[i] > 0 ? def->mass[i] : all;
-    return scene_mass_valid(mass) ? (scalar)(1 / mass) : 0;
+    return mass_valid(sizeof(scalar), mass) ? (scalar)(1 / mass) : 0;
 }
 
 static void fill_contacts(spring_scene *s, const spring_scene_def *def)
@@ -362,7 +377,7 @@ static void fill_particles(spring_scene *s, const spring_scene_def *def)
         }
     }
     for (size_t i = 0; i < def->particles && scene_has(s, ARRAY_INVERSE_MASS); i++)
-        scene_set_inverse_mass(s, i, inverse_mass_of(def, i));
+        scene_set_inverse_mass(s, i, (scalar)inverse_mass_of(def, sizeof(scalar), i));
     fill_contacts(s, def);
     scalar *freed = scene_memory(s, ARRAY_FREE_MASS);
     for (size_t i = 0; i < def->particles && freed != NULL; i++)
@@ -506,8 +521,10 @@ static uint64_t identify(const spring_scene *s, const spring_scene_def *def)
 enum { least_alignment = 8 }; /* [bytes] of malloc() on all systems, also with 32 bits */
 _Static_assert(_Alignof(spring_scene) <= least_alignment, "memory from malloc() can hold a scene");
 
-spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def, spring_scene **result)
+spring_status spring_scene_init(void *memory, size_t bytes, const public_scene_def *definition, spring_scene **result)
 {
+    spring_scene_def copy;
+    const spring_scene_def *const def = common_definition(definition, &copy);
     if (result == NULL)
         return SPRING_EINVAL;
     *result = NULL;
@@ -526,7 +543,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     spring_scene *s = memory;
     *s = (spring_scene){
         .layout = layout,
-        .force = def->force,
+        .force = definition->force,
         .user = def->user,
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
@@ -543,6 +560,28 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     s->ends = identify(s, def);
     *result = s;
     return SPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------ functions on definitions */
+
+spring_status spring_scene_check(const public_scene_def *def, const char **field, size_t *index)
+{
+    spring_scene_def copy;
+    return spring_definition_check(common_definition(def, &copy), sizeof(scalar), field, index);
+}
+
+spring_status spring_links_soften(const public_scene_def *def, double dt, double fraction, spring_link *link)
+{
+    spring_scene_def copy;
+    return spring_definition_soften(common_definition(def, &copy), sizeof(scalar), dt, fraction, link);
+}
+
+spring_status spring_links_tethers(const public_scene_def *def, double fraction, double slack, spring_link *out,
+                                   size_t *count, uint32_t *work, double *distance)
+{
+    spring_scene_def copy;
+    return spring_definition_tethers(common_definition(def, &copy), sizeof(scalar), fraction, slack, out, count, work,
+                                     distance);
 }
 
 #include "../simd/size_end.h"

@@ -30,7 +30,7 @@ struct scene_step {
     double t0, dt, done; /* the step starts at the time t0 + done dt */
     double colliders_base, colliders_from; /* [s] and its step: see struct spring_scene */
     cached_force cached;                   /* the forces at the start */
-    bool predicts;                         /* see scene_stepper */
+    bool predicts;                         /* see method_limits */
     damping_series damping;
     scene_contacts contacts;
 };

@@ -99,12 +99,13 @@ static bool header_valid(const spring_scene *s, const state_header *h)
 {
     const scene_layout *const l = &s->layout;
     for (uint32_t a = 0; a < l->axes; a++)
-        if (!scene_fits(h->gravity[a]))
+        if (!value_fits(sizeof(scalar), h->gravity[a]))
             return false;
     const bool predicts = l->offset[ARRAY_FORCE_1] != l->offset[ARRAY_FORCE_0];
     return h->kept <= (predicts ? PREDICTED_FORCE : FORCE) && (!scene_is_editable(s) || h->damped <= l->links) &&
-           h->bodies <= l->colliders && h->touching <= (h->bodies > 0 ? l->particles : 0) && scene_fits(h->dt) &&
-           h->colliders_from <= h->steps && spring_finite(h->t0 + (double)h->steps * h->dt) &&
+           h->bodies <= l->colliders && h->touching <= (h->bodies > 0 ? l->particles : 0) &&
+           value_fits(sizeof(scalar), h->dt) && h->colliders_from <= h->steps &&
+           spring_finite(h->t0 + (double)h->steps * h->dt) &&
            spring_finite(h->colliders_base + (double)(h->steps - h->colliders_from) * h->dt);
 }
 
@@ -169,7 +170,7 @@ static bool masses_valid(arriving *a, const section *row, uint8_t *state, bool f
     a->masses = state;
     a->pins = pins;
     a->lightest = lightest;
-    return fine && least > 0 && scene_fits(a->s->drag * (double)lightest);
+    return fine && least > 0 && value_fits(sizeof(scalar), a->s->drag * (double)lightest);
 }
 
 static void move_pins(spring_scene *s, const section *row, uint8_t *state, bool load)
@@ -187,21 +188,21 @@ static void move_pins(spring_scene *s, const section *row, uint8_t *state, bool 
 
 /* Coefficients of the links of an editable scene, in the order of their indices. The scene has them by slot. */
 
-typedef struct coefficients {
+typedef struct coefficient_slots {
     const uint32_t *slots; /* NULL: there are no bands, and each link has the slot of its index */
     size_t band_slots;
     size_t banded, unbanded; /* [bytes] from the start of the block to where slot 0 would be */
-} coefficients;
+} coefficient_slots;
 
-static coefficients coefficients_of(const spring_scene *s, scene_array array)
+static coefficient_slots coefficients_of(const spring_scene *s, scene_array array)
 {
     const scene_array banded = (scene_array)(array - ARRAY_LINK_STIFFNESS + ARRAY_BAND_STIFFNESS);
     const size_t slots = s->layout.band_slots;
-    return (coefficients){scene_read(s, ARRAY_SLOTS), slots, s->layout.offset[banded],
-                          s->layout.offset[array] - slots * sizeof(scalar)};
+    return (coefficient_slots){scene_read(s, ARRAY_SLOTS), slots, s->layout.offset[banded],
+                               s->layout.offset[array] - slots * sizeof(scalar)};
 }
 
-static inline scalar *coefficient_at(spring_scene *s, const coefficients *c, size_t slot)
+static inline scalar *coefficient_at(spring_scene *s, const coefficient_slots *c, size_t slot)
 {
     void *const at = (char *)s + ((slot < c->band_slots ? c->banded : c->unbanded) + slot * sizeof(scalar));
     return at;
@@ -209,7 +210,7 @@ static inline scalar *coefficient_at(spring_scene *s, const coefficients *c, siz
 
 static void move_coefficients(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const coefficients c = coefficients_of(s, row->array);
+    const coefficient_slots c = coefficients_of(s, row->array);
     if (c.slots == NULL) {
         move_numbers(scene_memory(s, row->array), state, row->count, sizeof(scalar), load);
     } else if (load) {
@@ -226,7 +227,7 @@ static void move_coefficients(spring_scene *s, const section *row, uint8_t *stat
    sign. */
 static void move_rests(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const coefficients c = coefficients_of(s, row->array);
+    const coefficient_slots c = coefficients_of(s, row->array);
     const uint32_t *const a = scene_read(s, ARRAY_LINK_A), *const b = scene_read(s, ARRAY_LINK_B);
     const uint8_t *const flags = scene_read(s, ARRAY_FLAGS);
     const bool directed = s->layout.axes == 1, all = (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
@@ -246,7 +247,7 @@ static void move_rests(spring_scene *s, const section *row, uint8_t *state, bool
 /* Stiffness or damping. While a tether does not act, it has 0 where other links have their coefficients. */
 static void move_strengths(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const coefficients c = coefficients_of(s, row->array);
+    const coefficient_slots c = coefficients_of(s, row->array);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
     move_coefficients(s, row, state, load);
     for (size_t i = 0; i < s->layout.tethers; i++) {
@@ -272,7 +273,7 @@ static bool strengths_valid(arriving *a, const section *row, uint8_t *state, boo
         const link_place at = scene_link_place(a->s, i);
         const double lighter = fmax(arriving_inverse_mass(a, at.a), arriving_inverse_mass(a, at.b));
         const double strength = (double)number_at(state, i);
-        if (!scene_not_negative(strength) || !scene_fits(2 * (strength * lighter)))
+        if (!value_not_negative(sizeof(scalar), strength) || !value_fits(sizeof(scalar), 2 * (strength * lighter)))
             return false;
     }
     return true;
@@ -325,7 +326,7 @@ static bool weighted_fits(const arriving *a, const stored_weighted *l, const wei
         link.weight[l->place[k]] = (double)n->weight[l->place[k]];
         inverse[l->place[k]] = n->weight[l->place[k]] != 0 ? arriving_inverse_mass(a, l->particle[k]) : 0;
     }
-    return weighted_overflows(&link, inverse) == NULL;
+    return spring_weighted_overflows(&link, sizeof(scalar), inverse) == NULL;
 }
 
 static bool weighted_valid(arriving *a, const section *row, uint8_t *state, bool fine)

@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Scenes in single precision; see kernels/single_precision.h. */
 #define SPRING_FLOAT
-#include "check.c"
 #include "colliders.c"
 #include "edit.c"
 #include "layout.c"
 #include "save.c"
-#include "soften.c"
 #include "stable_step.c"
 #include "state.c"
 #include "step.c"
 #include "steppers.c"
 #include "tear.c"
-#include "tethers.c"
 #include "transform.c"
 #include "weighted.c"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Bounds on the forces of links, from which the stable step of each method follows (steppers.c).
+ * Bounds on the forces of links, from which the stable step of each method follows (method_limits.c).
  *
  * Method    Gershgorin's circles: no eigenvalue of M^-1 K exceeds the largest absolute row sum of that matrix. A link
  *           adds at most 2 stiffness/mass to the row of each of its particles, or stiffness/mass if its other end is
  *           pinned. A weighted link adds stiffness/mass |w_i| times the sum of |w_j| of its particles that are free.
  */
-#include "steppers.h"
+#include "method_limits.h"
 #include "weighted_links.h"
 
 #include <limits.h>
@@ -187,9 +187,9 @@ const scene_bounds *spring_scene_find_bounds(spring_scene *s)
 
 double spring_scene_stable_step(spring_scene *s, spring_method m)
 {
-    if (s == NULL || spring_method_describe(m) == NULL || spring_scene_steppers[m].stable_step == NULL)
+    if (s == NULL || spring_method_describe(m) == NULL || spring_method_limits[m].stable_step == NULL)
         return (double)NAN;
-    return spring_scene_steppers[m].stable_step(spring_scene_find_bounds(s));
+    return spring_method_limits[m].stable_step(spring_scene_find_bounds(s));
 }
 
 #include "../simd/size_end.h"

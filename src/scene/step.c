@@ -58,7 +58,7 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
     if (s == NULL || spring_method_describe(m) == NULL || !scalar_finite((scalar)dt))
         return SPRING_EINVAL;
     if ((s->layout.methods & 1u << m) == 0)
-        return spring_scene_steppers[m].step == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;
+        return spring_scene_steppers[m] == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;
     if (spring_method_describe(m)->positions_only && scene_forces_use_velocity(s))
         return SPRING_EUNSUPPORTED;
     return s->colliders > 0 && m == SPRING_EULER ? SPRING_EUNSUPPORTED : SPRING_OK;
@@ -86,13 +86,13 @@ static cached_force take_scene_steps(scene_step *step, step_function *take, uint
 }
 
 /* Chooses an exponential kick if dt is beyond the limit of explicit damping. A negative dt is not. */
-static void choose_damping(scene_step *step, scene_links *links, const scene_stepper *stepper)
+static void choose_damping(scene_step *step, scene_links *links, const method_limits *limits)
 {
     spring_scene *const s = step->scene;
-    if (s->damped_links == 0 || stepper->explicit_limit == NULL)
+    if (s->damped_links == 0 || limits->explicit_limit == NULL)
         return;
     const scene_bounds *const bounds = spring_scene_find_bounds(s);
-    if (step->dt <= stepper->explicit_limit(bounds))
+    if (step->dt <= limits->explicit_limit(bounds))
         return;
     const double reach = step->dt * bounds->link_damping;
     step->damping = damping_series_for(fmin(reach, most_damping));
@@ -159,12 +159,12 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .done = (double)before,
                        .colliders_base = colliders_base,
                        .colliders_from = (double)colliders_from,
-                       .predicts = spring_scene_steppers[m].predicts};
+                       .predicts = spring_method_limits[m].predicts};
     prepare_collisions(&step);
-    choose_damping(&step, &links, &spring_scene_steppers[m]);
+    choose_damping(&step, &links, &spring_method_limits[m]);
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
-    const cached_force cached = take_scene_steps(&step, spring_scene_steppers[m].step, before, n, &finite);
+    const cached_force cached = take_scene_steps(&step, spring_scene_steppers[m], before, n, &finite);
     if (!finite) {
         clear_padding(s, step.to);
         if (!rollback)

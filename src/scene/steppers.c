@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One step of each method for scenes, and its stable step. The steps of RK4, RKN8 and SRKN6 are in runge_kutta.h.
+ * One step of each method for scenes. The steps of RK4, RKN8 and SRKN6 are in runge_kutta.h.
  *
  * The formulas are in the files in methods/. Here a(x, v) is the acceleration of a particle by its links, gravity, drag
- * and the callback. The stable steps follow from bounds on the sums over the links of a particle (stable_step.c).
+ * and the callback. The stable steps are in method_limits.c.
  */
 #include "exponential_kick.h"
 #include "runge_kutta.h"
-#include "../spring/roots.h"
 
 #include "../simd/size_begin.h"
 
@@ -21,11 +20,6 @@ static scene_outcome scene_euler(scene_step *s)
     return (scene_outcome){.finite = move(s, s->kernels->common->stage, &m)};
 }
 
-static double scene_euler_limit(const scene_bounds *b)
-{
-    return b->stiffness_sum > 0 ? fmin(b->drag / b->stiffness_sum, 2 / b->damping) : 2 / b->damping;
-}
-
 /* v1 = v + h a(x, v1), with implicit drag and explicit damping of links;  x1 = x + h v1 */
 static scene_outcome scene_symplectic_euler(scene_step *s)
 {
@@ -33,17 +27,6 @@ static scene_outcome scene_symplectic_euler(scene_step *s)
     scene_motion m = s->whole;
     m.contacts = with_contacts(s, IMPLICIT_KICK_DRIFT_CONTACTS);
     return (scene_outcome){.finite = move(s, s->kernels->common->implicit_kick_drift, &m)};
-}
-
-/* Explicit link damping lowers the limit, and implicit drag raises it. A motion with stiffness k, link damping c and
-   drag d, all divided by the mass, is stable for h^2 k + 2 h c < 4 + 2 h d. */
-static double scene_symplectic_euler_limit(const scene_bounds *b)
-{
-    const double excess = b->link_damping - b->least_drag;
-    const double root = spring_hypot(fabs(excess), 2 * spring_sqrt(b->stiffness));
-    if (excess > 0 || root == 0 || root == (double)INFINITY) /* infinite: no stable step is known */
-        return 4 / (excess + root);
-    return (root - excess) / b->stiffness;
 }
 
 #include "../simd/size_end.h"
@@ -80,52 +63,8 @@ static scene_outcome scene_leapfrog(scene_step *s)
     };
 }
 
-#include "../simd/size_begin.h"
-
-static double scene_leapfrog_limit(const scene_bounds *b)
-{
-    return 2 / spring_sqrt(b->stiffness);
-}
-
-/* Explicit damping c of links is stable for h^2 k/4 + h c < 1. Beyond 0.9 of it, or for h c > 0.4, the exponential kick
-   is more accurate at a similar cost. */
-static double scene_leapfrog_explicit_limit(const scene_bounds *b)
-{
-    const double least = 0.9, most = 0.4, damping = b->damping / least;
-    return fmin(most / b->link_damping, 2 / (damping + spring_hypot(damping, spring_sqrt(b->stiffness))));
-}
-
-static double scene_rk4_limit(const scene_bounds *b)
-{
-    const double limit = 2.61; /* for |h z| below it RK4 is stable in the whole left half plane */
-    return limit / fmax(spring_sqrt(b->stiffness), b->damping);
-}
-
-/* A growth far beyond e^20 would overflow in float, and leave no significant digit of a stage. */
-static double scene_rkn8_limit(const scene_bounds *b)
-{
-    return fmin(3.14 / spring_sqrt(b->stiffness), 40 / b->damping);
-}
-
-/* With heavy drag, the growth in backward drifts would exceed the decay in the others; see srkn6.h. */
-static double scene_srkn6_limit(const scene_bounds *b)
-{
-    return fmin(9.07 / spring_sqrt(b->stiffness), 20 / b->damping);
-}
-
-#include "../simd/size_end.h"
-
-SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
-    [SPRING_EULER] = {.step = scene_euler, .stable_step = scene_euler_limit},
-    [SPRING_SYMPLECTIC_EULER] = {.step = scene_symplectic_euler, .stable_step = scene_symplectic_euler_limit},
-    [SPRING_LEAPFROG] = {.step = scene_leapfrog,
-                         .stable_step = scene_leapfrog_limit,
-                         .predicts = true,
-                         .explicit_limit = scene_leapfrog_explicit_limit},
-    [SPRING_RK4] = {.step = scene_rk4, .stable_step = scene_rk4_limit, .stages = 4},
-    [SPRING_RKN8] = {.step = scene_rkn8,
-                     .stable_step = scene_rkn8_limit,
-                     .stages = rkn8_stages + 1,
-                     .mass_factors = RKN8_FACTORS},
-    [SPRING_SRKN6] = {.step = scene_srkn6, .stable_step = scene_srkn6_limit, .mass_factors = SRKN6_FACTORS},
+SPRING_TABLE step_function *const spring_scene_steppers[SPRING_METHOD_COUNT] = {
+    [SPRING_EULER] = scene_euler,       [SPRING_SYMPLECTIC_EULER] = scene_symplectic_euler,
+    [SPRING_LEAPFROG] = scene_leapfrog, [SPRING_RK4] = scene_rk4,
+    [SPRING_RKN8] = scene_rkn8,         [SPRING_SRKN6] = scene_srkn6,
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The methods for scenes: one stepper each, see steppers.c. */
+/* The methods for scenes: one stepper each, see steppers.c. method_limits.h has their stable steps. */
 #ifndef SPRINGSTEP_STEPPERS_H
 #define SPRINGSTEP_STEPPERS_H
 
@@ -15,15 +15,6 @@ typedef struct scene_outcome {
 
 typedef scene_outcome step_function(scene_step *); /* takes a step of a method */
 
-typedef struct scene_stepper {
-    step_function *step; /* NULL: the method is not for scenes */
-    double (*stable_step)(const scene_bounds *b);
-    bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities */
-    double (*explicit_limit)(const scene_bounds *b); /* of dt; beyond, kicks are exponential: exponential_kick.h */
-    unsigned stages;                                 /* quantities of all particles that it stores for its stages */
-    unsigned mass_factors;                           /* numbers that it stores for each mass, with drag */
-} scene_stepper;
-
-SPRING_INTERNAL const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT];
+SPRING_INTERNAL step_function *const spring_scene_steppers[SPRING_METHOD_COUNT]; /* NULL: not for scenes */
 
 #endif

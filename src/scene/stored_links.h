@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading and writing the links of a scene, and checks of links and masses. */
+/* Reading and writing the links of a scene. */
 #ifndef SPRINGSTEP_STORED_LINKS_H
 #define SPRINGSTEP_STORED_LINKS_H
 
 #include "block.h"
+#include "definition.h"
 
 #include <math.h>
 
@@ -141,41 +142,6 @@ static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inve
 {
     scalar *const mass = scene_memory(s, ARRAY_INVERSE_MASS);
     mass[i] = inverse;
-}
-
-/* ----------------------------------------------------------------------------------------------------- valid values */
-
-static inline bool scene_fits(double value) /* finite in the precision of the scene */
-{
-    return scalar_finite((scalar)value);
-}
-
-static inline bool scene_not_negative(double value)
-{
-    return value >= 0 && scene_fits(value);
-}
-
-static inline bool scene_mass_valid(double mass)
-{
-    return mass > 0 && scene_fits(mass) && scene_fits(1 / mass);
-}
-
-/* The field of a link that is not valid for any masses; NULL: none. */
-static inline const char *scene_link_invalid_field(const spring_link *link)
-{
-    return !scene_not_negative(link->rest)        ? "link.rest"
-           : !scene_not_negative(link->stiffness) ? "link.stiffness"
-           : !scene_not_negative(link->damping)   ? "link.damping"
-                                                  : NULL;
-}
-
-/* The field that is too large for the masses at the ends; NULL: none. */
-static inline const char *scene_link_overflows(const spring_link *link, double inverse_a, double inverse_b)
-{
-    const double lightest = fmax(inverse_a, inverse_b);
-    return !scene_fits(2 * (link->stiffness * lightest)) ? "link.stiffness"
-           : !scene_fits(2 * (link->damping * lightest)) ? "link.damping"
-                                                         : NULL;
 }
 
 #include "../simd/size_end.h"

@@ -9,7 +9,6 @@
  *           once to the row of its free end. With the fraction f of this row, no row grows by more than 1 + f.
  */
 #include "definition.h"
-#include "steppers.h"
 
 #include <string.h>
 
@@ -82,10 +81,10 @@ static bool hangs(const spring_scene_def *def, const hanging *h, size_t i)
     return !is_pinned(def, i) && h->pin[i] != no_pin && h->joined[i] == 0;
 }
 
-spring_status spring_links_tethers(const spring_scene_def *def, double fraction, double slack, spring_link *out,
-                                   size_t *count, uint32_t *work, double *distance)
+spring_status spring_definition_tethers(const spring_scene_def *def, size_t number, double fraction, double slack,
+                                        spring_link *out, size_t *count, uint32_t *work, double *distance)
 {
-    const spring_status status = spring_scene_check(def, NULL, NULL);
+    const spring_status status = spring_definition_check(def, number, NULL, NULL);
     if (status != SPRING_OK)
         return status;
     if (!(fraction > 0 && spring_finite(fraction) && slack >= 0 && spring_finite(slack)) || count == NULL ||

@@ -137,11 +137,11 @@ static bool replaces(const spring_scene *s, const stored_weighted *old, const sp
     for (int i = 0; i < 4; i++)
         if (link->weight[i] != 0 && (!defined[i] || link->particle[i] != now.particle[i]))
             return false;
-    if (weighted_invalid_field(link) != NULL)
+    if (spring_weighted_invalid_field(link, sizeof(scalar)) != NULL)
         return false;
     double inverse[4];
     weighted_inverse_masses(s, link, inverse);
-    return weighted_overflows(link, inverse) == NULL;
+    return spring_weighted_overflows(link, sizeof(scalar), inverse) == NULL;
 }
 
 spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, size_t count,

@@ -1,76 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading, checking and writing weighted links. */
+/* Reading and writing weighted links. */
 #ifndef SPRINGSTEP_WEIGHTED_LINKS_H
 #define SPRINGSTEP_WEIGHTED_LINKS_H
 
 #include "stored_links.h"
 
 #include "../simd/size_begin.h"
-
-/* The field of a weighted link that is not valid for any particles and masses; NULL: none. */
-static inline const char *weighted_invalid_field(const spring_weighted_link *link)
-{
-    const double tolerance = 1e-12; /* of the sum, relative to the largest weight: rounding errors of decimal numbers */
-    double sum = 0, largest = 0;
-    for (int i = 0; i < 4; i++) {
-        if (!scene_fits(link->weight[i]))
-            return "weighted_link.weight";
-        sum += link->weight[i];
-        largest = fmax(largest, fabs(link->weight[i]));
-    }
-    return !(fabs(sum) <= tolerance * largest)    ? "weighted_link.weight"
-           : !scene_not_negative(link->rest)      ? "weighted_link.rest"
-           : !scene_not_negative(link->stiffness) ? "weighted_link.stiffness"
-           : !scene_not_negative(link->damping)   ? "weighted_link.damping"
-                                                  : NULL;
-}
-
-/* |weight| of a particle times the sum of |weight| over the particles that are not pinned. This times the stiffness
-   bounds the row of the stiffness matrix, as 2 stiffness or 1 stiffness does for a link. */
-static inline double weighted_row(const double weight[4], const double inverse_mass[4], int i)
-{
-    double sum = 0;
-    for (int j = 0; j < 4; j++)
-        sum += inverse_mass[j] > 0 ? fabs(weight[j]) : 0;
-    return fabs(weight[i]) * sum;
-}
-
-/* The field that is too large for the masses; NULL: none. */
-static inline const char *weighted_overflows(const spring_weighted_link *link, const double inverse_mass[4])
-{
-    for (int i = 0; i < 4; i++) {
-        const double row = weighted_row(link->weight, inverse_mass, i);
-        if (!scene_fits(link->stiffness * row) || !scene_fits(link->stiffness * row * inverse_mass[i]))
-            return "weighted_link.stiffness";
-        if (!scene_fits(link->damping * row) || !scene_fits(link->damping * row * inverse_mass[i]))
-            return "weighted_link.damping";
-    }
-    return NULL;
-}
-
-/* A link whose weights are (w, -2w, w), at particles with a constant offset, and whose rest length is 0. */
-typedef struct three_points {
-    uint32_t lower, offset; /* offset: 0 if the link is none */
-    double weight;          /* w */
-} three_points;
-
-static inline three_points three_points_of(const spring_weighted_link *link)
-{
-    uint32_t particle[4] = {0};
-    double weight[4] = {0};
-    int points = 0;
-    for (int i = 0; i < 4; i++)
-        if (link->weight[i] != 0) {
-            particle[points] = link->particle[i];
-            weight[points++] = link->weight[i];
-        }
-    const bool up = particle[1] > particle[0];
-    const uint32_t offset = up ? particle[1] - particle[0] : particle[0] - particle[1];
-    const bool evenly = up ? particle[2] > particle[1] && particle[2] - particle[1] == offset
-                           : particle[1] > particle[2] && particle[1] - particle[2] == offset;
-    const bool fits = points == 3 && evenly && weight[0] == weight[2] && weight[1] == -2 * weight[0] && link->rest == 0;
-    return (three_points){up ? particle[0] : particle[2], fits ? offset : 0, weight[0]};
-}
 
 /* Stores the coefficients of a link in its slot of a band, with 0 if no band computes it. index: that of the slot */
 static inline void scene_fill_slot(spring_scene *s, const stored_weighted *l, size_t index)

@@ -25,6 +25,7 @@ typedef double scalar;
 #endif
 #include "../../src/kernels/single_precision.h"
 
+#define spring_scene_def public_scene_def /* of the precision */
 typedef spring_scene scene;
 
 enum { most_particles = 80, most_links = 1000, most_weighted = 40, most_calls = 40, guard = 2 * SPRING_SCENE_ALIGN };

@@ -20,6 +20,8 @@
 #endif
 #include "../../src/kernels/single_precision.h"
 
+#define spring_scene_def public_scene_def /* of the precision */
+
 enum { room = 1 << 18, most_bytes = 1 << 15 };
 
 enum { kinds = 64 };

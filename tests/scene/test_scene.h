@@ -14,6 +14,7 @@
 #include "scene/block.h"
 #include "simd/targets.h"
 
+#define spring_scene_def public_scene_def /* of the precision */
 typedef spring_scene scene;
 
 #ifdef SPRING_FLOAT
