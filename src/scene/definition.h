@@ -145,6 +145,27 @@ SPRING_INTERNAL spring_status spring_definition_tethers(const spring_scene_def *
                                                         double slack, spring_link *out, size_t *count, uint32_t *work,
                                                         double *distance);
 
+/* Checks a definition, and finds the layout of its scene. SPRING_ERANGE also if it exceeds the address space. */
+SPRING_INTERNAL spring_status spring_definition_layout(const spring_scene_def *def, const element_sizes *size,
+                                                       scene_layout *l);
+
+/* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
+   also their directions, unless links may be edited. With colliders, also the arrays of particles. */
+SPRING_INTERNAL uint64_t spring_definition_ends(const spring_scene_def *def);
+
+/* Finds the slots of all links, and the ends of those that are in no band: ARRAY_SLOTS, ARRAY_LINK_A, ARRAY_LINK_B and
+   ARRAY_FLAGS, or NULL. */
+SPRING_INTERNAL void spring_layout_links(const scene_layout *l, const spring_scene_def *def, uint32_t *slots,
+                                         uint32_t *end_a, uint32_t *end_b, uint8_t *flags);
+
+/* The slot of the next weighted link in its band, or no_slot. next: least lower end that each band still accepts, first 0 */
+SPRING_INTERNAL uint32_t spring_layout_weighted_slot(const scene_layout *l, const spring_weighted_link *link,
+                                                     uint32_t next[most_bands]);
+
+/* The particles of a weighted link, see stored_weighted. Returns their number. */
+SPRING_INTERNAL uint8_t spring_weighted_points(const spring_weighted_link *link, uint32_t particle[4],
+                                               uint8_t place[4]);
+
 /* The field of a link that is not valid for any masses; NULL: none. */
 SPRING_INTERNAL const char *spring_link_invalid_field(const spring_link *link, size_t number);
 SPRING_INTERNAL const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t number);

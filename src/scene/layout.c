@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Building a scene from its definition: finding bands, placing arrays, and filling them.
+ * The layout of a scene: finding bands, placing arrays, and finding the slot of each link.
  *
  * Bands     Links with the same index offset (upper minus lower end) form a band as long as their lower ends ascend in
  *           the order of the links, so that no slot is used twice. At least a quarter of the slots from the first to
@@ -8,9 +8,10 @@
  *           longest are kept. Offsets are counted in a small hash table. Links that do not fit into the table or into
  *           their band are unbanded. So are the links of particles without a regular order.
  */
+#include "contact.h"
 #include "definition.h"
+#include "method_limits.h"
 #include "state_numbers.h"
-#include "weighted_links.h"
 
 #include "../simd/size_begin.h"
 
@@ -79,7 +80,7 @@ static band_kind kind_of(const spring_link *link)
 }
 
 /* Finds the bands of a kind, as many as there is still room for. */
-SPRING_NOINLINE void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
+static void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
 {
     const bool editable = (def->flags & SPRING_SCENE_EDITABLE) != 0;
     const uint32_t room = most_bands - l->bands;
@@ -197,7 +198,8 @@ typedef struct array_row {
 } array_row;
 
 /* The arrays of a scene. Sizes and conditions are defined by this table alone; docs/details.md describes it. */
-static void list_arrays(const spring_scene_def *def, const scene_layout *l, array_row row[ARRAY_COUNT])
+static void list_arrays(const spring_scene_def *def, const element_sizes *size, const scene_layout *l,
+                        array_row row[ARRAY_COUNT])
 {
     const bool rollback = (l->flags & SPRING_SCENE_NO_UNDO) == 0, editable = (l->flags & SPRING_SCENE_EDITABLE) != 0;
     const bool damped = editable || has_damped_links(def);
@@ -208,7 +210,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool collides = l->colliders > 0, flagged = link_flags(def) != 0;
     /* Their velocities are read after the forces of bands have been stored. */
     const bool reads_later = l->weighted > 0 || (l->unbanded > 0 && (l->bands > 0 || !records));
-    const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
+    const size_t number = size->number, index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
     const array_row rows[ARRAY_COUNT] = {
         [ARRAY_X_0] = {number, quantity, true},
@@ -233,19 +235,19 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_LINK_REST] = {number, unbanded, l->unbanded > 0},
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
         [ARRAY_FLAGS] = {1, l->links, flagged},
-        [ARRAY_TETHERS] = {sizeof(tether), l->tethers, l->tethers > 0},
-        [ARRAY_WEIGHTED] = {sizeof(stored_weighted), l->weighted, l->weighted > 0},
+        [ARRAY_TETHERS] = {size->tethers, l->tethers, l->tethers > 0},
+        [ARRAY_WEIGHTED] = {size->weighted, l->weighted, l->weighted > 0},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
         [ARRAY_ROOTS] = {number, l->band_slots + unbanded, kicks},
         [ARRAY_FROZEN] = {number, 2 * (l->band_slots + unbanded), kicks},
         [ARRAY_KICK] = {number, (collides ? 4 : 3) * quantity, kicks},
-        [ARRAY_PRESSED] = {sizeof(pressed_particle), l->particles, kicks && collides},
+        [ARRAY_PRESSED] = {size->pressed, l->particles, kicks && collides},
         [ARRAY_SUMS] = {number, l->particles, true},
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
         [ARRAY_PLACED] = {sizeof(contact_body), l->colliders, collides},
-        [ARRAY_BOUNDS] = {1, offsetof(collider_bounds, each) + l->colliders * sizeof(collider_bound), collides},
+        [ARRAY_BOUNDS] = {1, size->bounds + l->colliders * size->bound, collides},
         [ARRAY_IMPULSES] = {sizeof(spring_impulse), 2 * (size_t)l->colliders, collides},
         [ARRAY_ORIGINS] = {sizeof(double[3]), l->colliders, collides},
         [ARRAY_RADIUS] = {number, l->particles + padding, collides && def->radius != NULL},
@@ -262,11 +264,11 @@ static uint64_t aligned(uint64_t bytes)
     return (bytes + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
 }
 
-static void place_arrays(const spring_scene_def *def, scene_layout *l)
+static void place_arrays(const spring_scene_def *def, const element_sizes *size, scene_layout *l)
 {
     array_row row[ARRAY_COUNT];
-    list_arrays(def, l, row);
-    l->bytes = aligned(sizeof(spring_scene)) + SPRING_SCENE_ALIGN; /* room for align_arrays() */
+    list_arrays(def, size, l, row);
+    l->bytes = aligned(size->block) + SPRING_SCENE_ALIGN; /* room for align_arrays() */
     for (int a = 0; a < ARRAY_COUNT; a++) {
         l->offset[a] = row[a].present ? (size_t)l->bytes - SPRING_SCENE_ALIGN : SIZE_MAX;
         l->bytes += row[a].present ? aligned((uint64_t)row[a].count * row[a].element) : 0;
@@ -275,18 +277,9 @@ static void place_arrays(const spring_scene_def *def, scene_layout *l)
         l->offset[ARRAY_FORCE_1] = l->offset[ARRAY_FORCE_0];
 }
 
-/* Moves the arrays so that they are aligned in this memory. A copy of the block has them at the same offsets, so there
-   they are aligned to 8 bytes at least, which all loads and stores accept. */
-static void align_arrays(scene_layout *l, const void *memory)
+spring_status spring_definition_layout(const spring_scene_def *def, const element_sizes *size, scene_layout *l)
 {
-    const size_t beyond = (uintptr_t)memory % SPRING_SCENE_ALIGN, shift = beyond > 0 ? SPRING_SCENE_ALIGN - beyond : 0;
-    for (int a = 0; a < ARRAY_COUNT; a++)
-        l->offset[a] += l->offset[a] != SIZE_MAX ? shift : 0;
-}
-
-static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
-{
-    const spring_status status = spring_definition_check(def, sizeof(scalar), NULL, NULL);
+    const spring_status status = spring_definition_check(def, size->number, NULL, NULL);
     if (status != SPRING_OK)
         return status;
     *l = (scene_layout){
@@ -309,80 +302,11 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
     l->stride = (def->particles + unit - 1) / unit * unit + beyond;
     l->quantity = l->axes * l->stride + 2 * padding;
     l->masses = each_mass ? l->stride : padding;
-    place_arrays(def, l);
+    place_arrays(def, size, l);
     return l->bytes <= SIZE_MAX ? SPRING_OK : SPRING_ERANGE;
 }
 
-_Static_assert(sizeof(public_scene_def) == sizeof(spring_scene_def), "definitions have the same fields");
-_Static_assert(offsetof(public_scene_def, mask) == offsetof(spring_scene_def, mask),
-               "definitions have the same fields");
-
-/* Copies a definition to the type of scenes in double, which functions for both precisions have. */
-static const spring_scene_def *common_definition(const public_scene_def *def, spring_scene_def *copy)
-{
-    if (def == NULL)
-        return NULL;
-    memcpy(copy, def, sizeof *copy);
-    return copy;
-}
-
-spring_status spring_scene_bytes(const public_scene_def *definition, size_t *bytes)
-{
-    spring_scene_def copy;
-    const spring_scene_def *const def = common_definition(definition, &copy);
-    if (bytes == NULL)
-        return SPRING_EINVAL;
-    scene_layout layout;
-    const spring_status status = make_layout(def, &layout);
-    if (status == SPRING_OK)
-        *bytes = (size_t)layout.bytes;
-    return status;
-}
-
-/* ---------------------------------------------------------------------------------------------------------- filling */
-
-/* The inverse mass of a particle when it is not pinned; 0: its mass is not valid. */
-static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
-{
-    const double all = def->mass_all == 0 ? 1 : def->mass_all;
-    const double mass = def->mass != NULL && def->mass[i] > 0 ? def->mass[i] : all;
-    return mass_valid(sizeof(scalar), mass) ? (scalar)(1 / mass) : 0;
-}
-
-static void fill_contacts(spring_scene *s, const spring_scene_def *def)
-{
-    scalar *const radius = scene_memory(s, ARRAY_RADIUS), *const friction = scene_memory(s, ARRAY_FRICTION);
-    uint32_t *const bits = scene_memory(s, ARRAY_BITS);
-    scalar largest = 0;
-    for (size_t i = 0; i < def->particles && radius != NULL; i++) {
-        radius[i] = (scalar)def->radius[i];
-        largest = radius[i] > largest ? radius[i] : largest;
-    }
-    if (radius != NULL)
-        s->largest_radius = largest;
-    for (size_t i = 0; i < def->particles && friction != NULL; i++)
-        friction[i] = (scalar)def->friction[i];
-    if (bits != NULL)
-        memcpy(bits, def->mask, def->particles * sizeof *bits);
-}
-
-static void fill_particles(spring_scene *s, const spring_scene_def *def)
-{
-    const uint32_t axes = s->layout.axes;
-    for (uint32_t a = 0; a < axes; a++) {
-        scalar *x = scene_axis(s, ARRAY_X_0, a), *v = scene_axis(s, ARRAY_V_0, a);
-        for (size_t i = 0; i < def->particles; i++) {
-            x[i] = (scalar)def->position[i * axes + a];
-            v[i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
-        }
-    }
-    for (size_t i = 0; i < def->particles && scene_has(s, ARRAY_INVERSE_MASS); i++)
-        scene_set_inverse_mass(s, i, (scalar)inverse_mass_of(def, sizeof(scalar), i));
-    fill_contacts(s, def);
-    scalar *freed = scene_memory(s, ARRAY_FREE_MASS);
-    for (size_t i = 0; i < def->particles && freed != NULL; i++)
-        freed[i] = free_inverse_mass_of(def, i);
-}
+/* ----------------------------------------------------------------------------------------------------------- slots */
 
 static const band_layout *band_of(const scene_layout *l, band_kind kind, uint32_t offset)
 {
@@ -392,7 +316,6 @@ static const band_layout *band_of(const scene_layout *l, band_kind kind, uint32_
     return NULL;
 }
 
-/* The slot of a link in its band, or no_slot. next: least lower end that each band still accepts */
 static uint32_t slot_in_band(const scene_layout *l, band_kind kind, uint32_t offset, uint32_t lower,
                              uint32_t next[most_bands])
 {
@@ -403,83 +326,49 @@ static uint32_t slot_in_band(const scene_layout *l, band_kind kind, uint32_t off
     return (uint32_t)(band->slots + lower - band->first / tile * tile);
 }
 
-/* Copies the first element of a vector to the others. */
-static void spread(scalar *vector)
+void spring_layout_links(const scene_layout *l, const spring_scene_def *def, uint32_t *slots, uint32_t *end_a,
+                         uint32_t *end_b, uint8_t *flags)
 {
-    for (size_t i = 1; i < padding; i++)
-        vector[i] = vector[0];
-}
-
-static void fill_links(spring_scene *s, const spring_scene_def *def)
-{
-    const scene_layout *l = &s->layout;
-    uint32_t *slots = scene_memory(s, ARRAY_SLOTS), *link_a = scene_memory(s, ARRAY_LINK_A),
-             *link_b = scene_memory(s, ARRAY_LINK_B);
-    uint8_t *const flags = scene_memory(s, ARRAY_FLAGS);
-    tether *tethers = scene_memory(s, ARRAY_TETHERS);
     uint32_t next[most_bands] = {0}, unbanded = 0;
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
         uint32_t slot = slot_in_band(l, kind_of(link), offset_of(link), lower_end(link), next);
         if (slot == no_slot) {
             slot = (uint32_t)l->band_slots + unbanded;
-            link_a[unbanded] = link->a;
-            link_b[unbanded] = link->b;
+            end_a[unbanded] = link->a;
+            end_b[unbanded] = link->b;
             unbanded++;
         }
         if (slots != NULL)
             slots[i] = slot;
         if (flags != NULL)
             flags[i] = (uint8_t)link->flags;
-        if (kind_of(link) == BAND_OF_TETHERS)
-            *tethers++ = (tether){.link = (uint32_t)i};
-    }
-    for (size_t i = 0; i < def->links; i++) {
-        const spring_link acting = acting_link(s, i, &def->link[i]);
-        scene_write_link(s, i, &acting);
-        scene_count_damped(s, acting.rest, acting.damping, true);
-    }
-    const scene_array coefficients[] = {ARRAY_BAND_STIFFNESS, ARRAY_BAND_REST, ARRAY_BAND_DAMPING};
-    for (int k = 0; k < 3; k++) {
-        scalar *all = scene_memory(s, coefficients[k]);
-        for (uint32_t r = 0; r < l->bands && all != NULL; r++)
-            if (l->band[r].equal)
-                spread(all + l->band[r].coefficients);
     }
 }
 
-/* The particles of a weighted link; see stored_weighted. */
-static stored_weighted particles_of(const spring_weighted_link *link)
+uint32_t spring_layout_weighted_slot(const scene_layout *l, const spring_weighted_link *link, uint32_t next[most_bands])
 {
-    stored_weighted to = {.slot = no_slot};
+    const three_points points = three_points_of(link);
+    return points.offset > 0 ? slot_in_band(l, BAND_OF_THREE_POINTS, points.offset, points.lower, next) : no_slot;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- ends */
+
+uint8_t spring_weighted_points(const spring_weighted_link *link, uint32_t particle[4], uint8_t place[4])
+{
     int first = 0;
+    uint8_t points = 0;
     for (int i = 1; i < 4; i++)
         if (fabs(link->weight[i]) > fabs(link->weight[first]))
             first = i;
     for (int i = 0; i < 4; i++) {
-        const int place = i == 0 ? first : i <= first ? i - 1 : i;
-        if (link->weight[place] == 0)
+        const int at = i == 0 ? first : i <= first ? i - 1 : i;
+        if (link->weight[at] == 0)
             continue;
-        to.place[to.points] = (uint8_t)place;
-        to.particle[to.points++] = link->particle[place];
+        place[points] = (uint8_t)at;
+        particle[points++] = link->particle[at];
     }
-    return to;
-}
-
-static void fill_weighted_links(spring_scene *s, const spring_scene_def *def)
-{
-    uint32_t next[most_bands] = {0};
-    stored_weighted *const all = scene_memory(s, ARRAY_WEIGHTED);
-    for (size_t i = 0; i < def->weighted_links; i++) {
-        const spring_weighted_link *link = &def->weighted_link[i];
-        const three_points points = three_points_of(link);
-        all[i] = particles_of(link);
-        if (points.offset > 0)
-            all[i].slot = slot_in_band(&s->layout, BAND_OF_THREE_POINTS, points.offset, points.lower, next);
-        scene_write_weighted(s, &all[i], link);
-        s->damped_links += all[i].damping > 0;
-        s->loose += !all[i].banded;
-    }
+    return points;
 }
 
 static uint64_t hashed_numbers(uint64_t hash, const double *number, size_t count)
@@ -493,12 +382,9 @@ static uint64_t hashed_numbers(uint64_t hash, const double *number, size_t count
     return hashed(hash, number != NULL);
 }
 
-/* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
-   also their directions, unless links may be edited. With colliders, also the arrays of particles. */
-static uint64_t identify(const spring_scene *s, const spring_scene_def *def)
+uint64_t spring_definition_ends(const spring_scene_def *def)
 {
-    const bool directed = s->layout.axes == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
-    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    const bool directed = axes_of(def) == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
     uint64_t hash = 0;
     for (size_t i = 0; i < def->links; i++) {
         const uint64_t a = def->link[i].a, b = def->link[i].b;
@@ -506,9 +392,13 @@ static uint64_t identify(const spring_scene *s, const spring_scene_def *def)
         if (def->link[i].flags != 0)
             hash = hashed(hash, def->link[i].flags);
     }
-    for (size_t i = 0; i < def->weighted_links; i++)
-        for (uint64_t k = 0; k < weighted[i].points; k++)
-            hash = hashed(hash, weighted[i].particle[k] | k << 32 | (uint64_t)weighted[i].place[k] << 40);
+    for (size_t i = 0; i < def->weighted_links; i++) {
+        uint32_t particle[4];
+        uint8_t place[4];
+        const uint8_t points = spring_weighted_points(&def->weighted_link[i], particle, place);
+        for (uint64_t k = 0; k < points; k++)
+            hash = hashed(hash, particle[k] | k << 32 | (uint64_t)place[k] << 40);
+    }
     if (def->colliders == 0 || (def->radius == NULL && def->friction == NULL && def->mask == NULL))
         return hash;
     hash = hashed_numbers(hash, def->radius, def->particles);
@@ -516,72 +406,6 @@ static uint64_t identify(const spring_scene *s, const spring_scene_def *def)
     for (size_t i = 0; i < def->particles && def->mask != NULL; i++)
         hash = hashed(hash, def->mask[i]);
     return hash;
-}
-
-enum { least_alignment = 8 }; /* [bytes] of malloc() on all systems, also with 32 bits */
-_Static_assert(_Alignof(spring_scene) <= least_alignment, "memory from malloc() can hold a scene");
-
-spring_status spring_scene_init(void *memory, size_t bytes, const public_scene_def *definition, spring_scene **result)
-{
-    spring_scene_def copy;
-    const spring_scene_def *const def = common_definition(definition, &copy);
-    if (result == NULL)
-        return SPRING_EINVAL;
-    *result = NULL;
-    scene_layout layout;
-    const spring_status status = make_layout(def, &layout);
-    if (status != SPRING_OK)
-        return status;
-    if (memory == NULL)
-        return SPRING_EINVAL;
-    if ((uintptr_t)memory % least_alignment != 0)
-        return SPRING_EALIGN;
-    if (bytes < layout.bytes)
-        return SPRING_ENOMEM;
-    align_arrays(&layout, memory);
-    memset(memory, 0, (size_t)layout.bytes);
-    spring_scene *s = memory;
-    *s = (spring_scene){
-        .layout = layout,
-        .force = definition->force,
-        .user = def->user,
-        .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
-        .drag = def->drag,
-        .particle_radius = (scalar)def->particle_radius,
-        .largest_radius = (scalar)def->particle_radius,
-        .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : SCALAR_MAX,
-    };
-    s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);
-    spread(s->inverse_mass_vector);
-    scene_store_gravity(s, def->gravity);
-    fill_particles(s, def);
-    fill_links(s, def);
-    fill_weighted_links(s, def);
-    s->ends = identify(s, def);
-    *result = s;
-    return SPRING_OK;
-}
-
-/* ------------------------------------------------------------------------------------------ functions on definitions */
-
-spring_status spring_scene_check(const public_scene_def *def, const char **field, size_t *index)
-{
-    spring_scene_def copy;
-    return spring_definition_check(common_definition(def, &copy), sizeof(scalar), field, index);
-}
-
-spring_status spring_links_soften(const public_scene_def *def, double dt, double fraction, spring_link *link)
-{
-    spring_scene_def copy;
-    return spring_definition_soften(common_definition(def, &copy), sizeof(scalar), dt, fraction, link);
-}
-
-spring_status spring_links_tethers(const public_scene_def *def, double fraction, double slack, spring_link *out,
-                                   size_t *count, uint32_t *work, double *distance)
-{
-    spring_scene_def copy;
-    return spring_definition_tethers(common_definition(def, &copy), sizeof(scalar), fraction, slack, out, count, work,
-                                     distance);
 }
 
 #include "../simd/size_end.h"

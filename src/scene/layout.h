@@ -10,7 +10,8 @@
 enum {
     padding = 16,    /* elements of the longest SIMD vector; every array has as many before and after it */
     most_bands = 32, /* a block with shear and bend springs has 16 */
-    tile = 64        /* slots of a band whose forces are computed together; they fit the first-level cache */
+    tile = 64,       /* slots of a band whose forces are computed together; they fit the first-level cache */
+    quad_size = 4    /* numbers of a quad, see simd/quad_tmpl.h */
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
@@ -76,6 +77,12 @@ typedef struct band_layout {
     size_t slots, coefficients, ring_start;
     size_t ring; /* see scene_band */
 } band_layout;
+
+/* [bytes] of elements that depend on the precision */
+typedef struct element_sizes {
+    size_t number, block, tethers, weighted, pressed; /* block: struct spring_scene */
+    size_t bounds, bound;                            /* a collider_bounds without colliders, and a collider_bound */
+} element_sizes;
 
 typedef struct scene_layout {
     uint32_t axes, flags, methods, colliders;

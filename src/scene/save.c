@@ -141,6 +141,13 @@ static size_t section_bytes(const section *row)
 
 #include "../simd/size_end.h"
 
+static inline scalar number_at(const uint8_t *state, size_t i)
+{
+    scalar number;
+    copy_numbers(&number, state + i * sizeof number, 1, sizeof number);
+    return number;
+}
+
 /* A quantity: all particles on the first axis, then on the next. */
 static void move_quantity(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
@@ -543,7 +550,8 @@ static bool section_valid(arriving *a, const section *row, uint8_t *state)
     uint64_t headroom = 0;
     for (double bound = 0.5; row->numbers == STRENGTHS && bound <= (double)a->lightest; bound *= 2)
         headroom++;
-    const bool fine = row->numbers == ANY || numbers_valid(state, section_bytes(row), row->numbers == FINITE, headroom);
+    const bool fine = row->numbers == ANY ||
+                      spring_state_valid(state, section_bytes(row), sizeof(scalar), row->numbers == FINITE, headroom);
     return row->valid != NULL ? row->valid(a, row, state, fine) : fine;
 }
 
@@ -571,7 +579,7 @@ spring_status spring_scene_save(const spring_scene *s, void *out, size_t *bytes)
         memset(at + all - zeros, 0, zeros); /* padding, and bits */
         list[i].move((spring_scene *)s, &list[i], at, false);
     }
-    const uint64_t check = check_value(out, *bytes - word_bytes);
+    const uint64_t check = spring_state_check(out, *bytes - word_bytes);
     copy_numbers(at, &check, 1, word_bytes);
     return SPRING_OK;
 }
@@ -585,7 +593,7 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
     copy_numbers(&h, in, header_words, word_bytes);
     uint8_t *const state = (uint8_t *)in, *at = state + sizeof h; /* which is not written to */
     if (h.magic != state_magic() || h.bytes != bytes ||
-        check_value(in, bytes - word_bytes) != word_at(state + bytes - word_bytes))
+        spring_state_check(in, bytes - word_bytes) != word_at(state + bytes - word_bytes))
         return SPRING_EINVAL;
     if (!header_matches(s, &h))
         return SPRING_EMISMATCH;

@@ -3,7 +3,7 @@
 #define SPRING_FLOAT
 #include "colliders.c"
 #include "edit.c"
-#include "layout.c"
+#include "init.c"
 #include "save.c"
 #include "stable_step.c"
 #include "state.c"

@@ -26,6 +26,4 @@ static inline bool scalar_finite(scalar a)
     return a - a == 0;
 }
 
-enum { quad_size = 4 }; /* numbers of a quad, see quad_tmpl.h */
-
 #endif
