@@ -4,122 +4,6 @@
 #include "block.h"
 #include "../spring/roots.h"
 
-/* ----------------------------------------------------------------------------------------------------- valid values */
-
-static bool fits3(const double v[3], uint32_t axes)
-{
-    for (uint32_t a = 0; a < axes; a++)
-        if (!scalar_finite((scalar)v[a]))
-            return false;
-    return true;
-}
-
-static bool fits_not_negative(double value)
-{
-    return value >= 0 && scalar_finite((scalar)value);
-}
-
-static double dot_of(const double a[3], const double b[3], uint32_t axes)
-{
-    double sum = 0;
-    for (uint32_t i = 0; i < axes; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
-/* The number of axes that a shape uses. */
-static uint32_t axes_of_shape(const spring_collider *c, uint32_t axes)
-{
-    bool given = c->shape == SPRING_BOX;
-    for (uint32_t i = 0; i < axes && c->shape == SPRING_CUSTOM; i++)
-        for (uint32_t a = 0; a < axes; a++)
-            given = given || c->axis[i][a] != 0;
-    return c->shape == SPRING_PLANE ? 1 : given ? axes : 0;
-}
-
-/* The largest difference between a dot product of two of these axes and that of unit vectors at right angles. NaN if
-   one is NaN. */
-static double orthonormality_error(const spring_collider *c, uint32_t count, uint32_t axes)
-{
-    double largest = 0;
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t j = 0; j <= i; j++) {
-            const double error = fabs(dot_of(c->axis[i], c->axis[j], axes) - (i == j));
-            if (!spring_finite(error))
-                return error;
-            largest = fmax(largest, error);
-        }
-    return largest;
-}
-
-/* Replaces axes by the nearest orthonormal ones: Newton-Schulz iteration of the polar decomposition,
-   a_i <- (3 a_i - sum over j of (a_i . a_j) a_j)/2, which squares the error. Axes without an error beyond rounding do
-   not change. Source: Higham, Functions of Matrices (2008), section 8.3. */
-static void orthonormalise(spring_collider *c, uint32_t count, uint32_t axes)
-{
-    const double rounding = 4 * DBL_EPSILON;
-    enum { rounds = 4 }; /* from 1e-3: 8e-7, 5e-13, rounding */
-    for (int round = 0; round < rounds && orthonormality_error(c, count, axes) > rounding; round++) {
-        const spring_collider old = *c;
-        for (uint32_t i = 0; i < count; i++)
-            for (uint32_t a = 0; a < axes; a++) {
-                double sum = 0;
-                for (uint32_t j = 0; j < count; j++)
-                    sum += dot_of(old.axis[i], old.axis[j], axes) * old.axis[j][a];
-                c->axis[i][a] = (3 * old.axis[i][a] - sum) / 2;
-            }
-    }
-}
-
-static bool fits_angles(const double v[3], uint32_t axes)
-{
-    return axes == 2 ? scalar_finite((scalar)v[2]) : fits3(v, axes);
-}
-
-/* The name of the first field that is not valid; NULL: none. radius: of particles, the largest */
-static const char *invalid_field(const spring_collider *c, double radius, uint32_t axes)
-{
-    const double tolerance = 1e-3; /* of axes; products of many matrices of floats have errors of 1e-6 */
-    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE,
-               custom = c->shape == SPRING_CUSTOM;
-    if (!plane && !capsule && !custom && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
-        return "shape";
-    if (!fits3(c->at, axes))
-        return "at";
-    if (capsule && !fits3(c->to, axes))
-        return "to";
-    if (!(orthonormality_error(c, axes_of_shape(c, axes), axes) <= tolerance))
-        return "axis";
-    if (plane && !scalar_finite((scalar)(dot_of(c->axis[0], c->at, axes) + radius)))
-        return "at";
-    for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
-        if (!fits_not_negative(c->half[a]))
-            return "half";
-    if (!plane && !(c->radius >= 0 && fits_not_negative(c->radius + radius)))
-        return "radius";
-    if (!fits3(c->velocity, axes))
-        return "velocity";
-    if (capsule && !fits3(c->velocity_to, axes))
-        return "velocity_to";
-    if (!fits_angles(c->spin, axes))
-        return "spin";
-    if (!fits_not_negative(c->friction))
-        return "friction";
-    if (!(c->restitution >= 0 && c->restitution <= 1))
-        return "restitution";
-    if (!fits3(c->acceleration, axes))
-        return "acceleration";
-    if (!fits_angles(c->spin_acceleration, axes))
-        return "spin_acceleration";
-    if (!fits3(c->surface, axes))
-        return "surface";
-    if (custom && c->gap == NULL)
-        return "gap";
-    if (custom && !(c->thickness > 0 && scalar_finite((scalar)c->thickness)))
-        return "thickness";
-    return custom && !fits_not_negative(c->bound) ? "bound" : NULL;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ poses */
 
 static void copy3(scalar to[3], vector3 from)
@@ -246,7 +130,8 @@ spring_status spring_scene_check_colliders(const spring_scene *s, const spring_c
         status = s->layout.colliders == 0 ? SPRING_EDISABLED : SPRING_ERANGE;
     }
     while (name == NULL && i < count)
-        if ((name = invalid_field(&c[i], (double)s->largest_radius, s->layout.axes)) == NULL)
+        if ((name = spring_collider_invalid_field(&c[i], sizeof(scalar), (double)s->largest_radius, s->layout.axes)) ==
+            NULL)
             i++;
     if (field != NULL)
         *field = name;
@@ -263,7 +148,7 @@ spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider 
     spring_collider *const set = scene_memory(s, ARRAY_COLLIDERS);
     for (uint32_t i = 0; i < count; i++) {
         set[i] = c[i];
-        orthonormalise(&set[i], axes_of_shape(&c[i], s->layout.axes), s->layout.axes);
+        spring_collider_orthonormalise(&set[i], s->layout.axes);
     }
     s->colliders = count;
     s->colliders_base = 0;
@@ -275,31 +160,6 @@ spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider 
             memset(touched, 0, s->layout.particles * sizeof *touched);
     }
     return SPRING_OK;
-}
-
-static void store3(double to[3], vector3 from)
-{
-    to[0] = from.x;
-    to[1] = from.y;
-    to[2] = from.z;
-}
-
-/* Replaces a collider by its state t after it was set. */
-static void move_collider(spring_collider *c, double t, uint32_t axes)
-{
-    const bool capsule = c->shape == SPRING_CAPSULE;
-    contact_body b;
-    spring_contact_place(&b, c, t, t, axes);
-    for (uint32_t a = 0; a < axes; a++) {
-        const double change = t * c->acceleration[a];
-        c->at[a] += t * (c->velocity[a] + change / 2);
-        c->to[a] += capsule ? t * (c->velocity_to[a] + change / 2) : 0;
-        c->velocity[a] += change;
-        c->velocity_to[a] += capsule ? change : 0;
-    }
-    store3(c->spin, b.start.spin);
-    for (int i = 0; i < (c->shape == SPRING_PLANE ? 1 : 3) && b.turns; i++)
-        store3(c->axis[i], b.start.axis[i]);
 }
 
 spring_status spring_scene_get_colliders(const spring_scene *s, spring_collider *out, uint32_t *count)
@@ -314,7 +174,7 @@ spring_status spring_scene_get_colliders(const spring_scene *s, spring_collider 
     for (uint32_t i = 0; i < s->colliders; i++) {
         out[i] = ((const spring_collider *)scene_read(s, ARRAY_COLLIDERS))[i];
         if (t != 0)
-            move_collider(&out[i], t, s->layout.axes);
+            spring_collider_move(&out[i], t, s->layout.axes);
     }
     return SPRING_OK;
 }

@@ -81,6 +81,17 @@ typedef struct contact_surface {
     double friction;  /* with this particle */
 } contact_surface;
 
+/* The name of the first field of a collider that is not valid; NULL: none. number: see definition.h. radius: [m] of
+   particles, the largest */
+SPRING_INTERNAL const char *spring_collider_invalid_field(const spring_collider *c, size_t number, double radius,
+                                                          uint32_t axes);
+
+/* Replaces its axes by the nearest orthonormal ones. */
+SPRING_INTERNAL void spring_collider_orthonormalise(spring_collider *c, uint32_t axes);
+
+/* Replaces a collider by its state t after it was set. */
+SPRING_INTERNAL void spring_collider_move(spring_collider *c, double t, uint32_t axes);
+
 /* Places a collider for a drift that starts and ends t0 and t1 after the collider was set. */
 SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1,
                                           uint32_t axes);
