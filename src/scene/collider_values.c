@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Colliders of scenes of either precision: valid values, and their state after some time. */
+/* Colliders of scenes of either precision: valid values, their state after some time, and in saved states. */
 #include "contact.h"
 #include "definition.h"
+#include "state_numbers.h"
 
 #include "../simd/size_begin.h"
 
@@ -136,6 +137,61 @@ void spring_collider_move(spring_collider *c, double t, uint32_t axes)
     store3(c->spin, b.start.spin);
     for (int i = 0; i < (c->shape == SPRING_PLANE ? 1 : 3) && b.turns; i++)
         store3(c->axis[i], b.start.axis[i]);
+}
+
+/* ----------------------------------------------------------------------------------------------------- saved states */
+
+/* Colliders: the shape and the mask, and numbers in the order of this table. */
+static const struct {
+    size_t offset, count;
+} collider_numbers[] = {
+    {offsetof(spring_collider, at), 3},           {offsetof(spring_collider, to), 3},
+    {offsetof(spring_collider, axis), 9},         {offsetof(spring_collider, half), 3},
+    {offsetof(spring_collider, radius), 1},       {offsetof(spring_collider, velocity), 3},
+    {offsetof(spring_collider, velocity_to), 3},  {offsetof(spring_collider, spin), 3},
+    {offsetof(spring_collider, friction), 1},     {offsetof(spring_collider, restitution), 1},
+    {offsetof(spring_collider, acceleration), 3}, {offsetof(spring_collider, spin_acceleration), 3},
+    {offsetof(spring_collider, surface), 3},      {offsetof(spring_collider, thickness), 1},
+    {offsetof(spring_collider, bound), 1},
+};
+enum { collider_fields = sizeof collider_numbers / sizeof collider_numbers[0] };
+
+/* Collider i of the scene, of which `set` are set: as it is, after it has been saved, or loaded, with its function. */
+static spring_collider moved_collider(const spring_collider *own, uint32_t set, size_t i, uint8_t *state, bool load)
+{
+    spring_collider c = i < set ? own[i] : (spring_collider){0};
+    uint64_t first = c.shape | (uint64_t)c.mask << 32;
+    state += i * collider_words * word_bytes;
+    move_numbers(&first, state, 1, word_bytes, load);
+    c.shape = (spring_shape)(uint32_t)first;
+    c.mask = (uint32_t)(first >> 32);
+    state += word_bytes;
+    for (int k = 0; k < collider_fields; state += collider_numbers[k++].count * word_bytes)
+        move_numbers((char *)&c + collider_numbers[k].offset, state, collider_numbers[k].count, word_bytes, load);
+    return c;
+}
+
+void spring_state_colliders(spring_collider *own, uint32_t set, size_t count, uint8_t *state, bool load)
+{
+    for (size_t i = 0; i < count; i++) {
+        const spring_collider moved = moved_collider(own, set, i, state, load);
+        if (load)
+            own[i] = moved;
+    }
+}
+
+bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size_t count, uint8_t *state, size_t number,
+                                  double radius, uint32_t axes)
+{
+    bool valid = true;
+    for (size_t i = 0; i < count && valid; i++) {
+        const spring_collider c = moved_collider(own, set, i, state, true);
+        const bool custom = i < set && own[i].shape == SPRING_CUSTOM;
+        const uint32_t shape = (uint32_t)word_at(state + i * collider_words * word_bytes);
+        valid = shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
+                spring_collider_invalid_field(&c, number, radius, axes) == NULL;
+    }
+    return valid;
 }
 
 #include "../simd/size_end.h"

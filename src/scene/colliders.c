@@ -210,18 +210,14 @@ spring_status spring_scene_touching(const spring_scene *s, uint32_t *bits, size_
 double spring_scene_balanced(const spring_scene *s, size_t i, const double accel[3])
 {
     const uint32_t *touched = scene_read(s, touched_in(s->buffer));
-    const contact_body *body = scene_read(s, ARRAY_PLACED);
-    contact_surface surface[most_colliders];
-    contact_particle particle = {0};
+    contact_surface surface[most_surfaces];
+    contact_particle particle = {.touched = touched[i]};
     scene_contact_particle(s, i, &particle);
     double at[3] = {0};
-    unsigned count = 0;
     for (uint32_t a = 0; a < s->layout.axes; a++)
         at[a] = (double)scene_state(s, SPRING_POSITION, a)[i];
-    for (uint32_t k = 0; k < s->colliders && count + 3 <= most_colliders; k++)
-        if ((touched[i] >> k & 1) != 0)
-            count += spring_contact_surfaces(&body[k], &particle, true, (vector3){at[0], at[1], at[2]},
-                                             (double)SCALAR_EPSILON, surface + count);
+    const unsigned count = spring_contact_surfaces(scene_read(s, ARRAY_PLACED), s->colliders, &particle, true,
+                                                   (vector3){at[0], at[1], at[2]}, (double)SCALAR_EPSILON, surface);
     return spring_contact_balance(surface, count, (vector3){accel[0], accel[1], accel[2]});
 }
 

@@ -1257,15 +1257,21 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 
 /* ---------------------------------------------------------------------------------------------------------- queries */
 
-unsigned spring_contact_surfaces(const contact_body *b, const contact_particle *p, bool at_end, vector3 x,
-                                 double epsilon, contact_surface surface[3])
+unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p, bool at_end,
+                                 vector3 x, double epsilon, contact_surface surface[most_surfaces])
 {
     const contact_setting s = {.epsilon = epsilon};
-    constraint c[most_constraints];
-    contact_particle particle = *p;
-    const unsigned count = add_constraints(&particle, b, 0, at_end, x, same_place * slop_of(&s, p, b), c, 0);
-    for (unsigned i = 0; i < count; i++)
-        surface[i] = (contact_surface){c[i].n, c[i].velocity, c[i].friction};
+    unsigned count = 0;
+    for (unsigned k = 0; k < bodies && count + 3 <= most_surfaces; k++) {
+        if ((p->touched >> k & 1) == 0)
+            continue;
+        constraint c[most_constraints];
+        contact_particle particle = *p;
+        const double slop = same_place * slop_of(&s, p, &body[k]);
+        const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, slop, c, 0);
+        for (unsigned i = 0; i < found; i++)
+            surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction};
+    }
     return count;
 }
 

@@ -103,10 +103,13 @@ SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_part
 SPRING_INTERNAL void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end,
                                          vector3 x, vector3 *v);
 
-/* The surfaces that a particle touches at x, at the start or the end of the drift: those whose gap is the least.
-   Returns their number. */
-SPRING_INTERNAL unsigned spring_contact_surfaces(const contact_body *b, const contact_particle *p, bool at_end,
-                                                 vector3 x, double epsilon, contact_surface surface[3]);
+enum { most_surfaces = 16 }; /* that a particle touches; further ones are ignored */
+
+/* The surfaces of the touched colliders that a particle touches at x, at the start or the end of the drift: those whose
+   gap is the least, at most 3 of each collider. Returns their number. */
+SPRING_INTERNAL unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p,
+                                                 bool at_end, vector3 x, double epsilon,
+                                                 contact_surface surface[most_surfaces]);
 
 /* The acceleration that is left of `accel` by the normal forces and the static friction of the surfaces. */
 SPRING_INTERNAL double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel);

@@ -47,96 +47,6 @@
 /* The time of a step is that of its kernels. */
 #include "../simd/size_begin.h"
 
-/* The largest h G. Beyond, the damping of each link saturates: see spring_scene_find_roots(). */
-static const double most_damping = 3e4;
-
-/* One step of the recurrence I_{k-1} = I_{k+1} + 2 k/rho I_k, downwards. */
-static inline void bessel_step(double rho, unsigned k, double *above, double *here)
-{
-    const double below = *above + 2 * k / rho * *here;
-    *above = *here;
-    *here = below;
-}
-
-/* Solves the symmetric system for the weights (a, b, e), which make the moments of K over c_-s ... c_s equal to those
-   of e^-z: 1, 1 and 3 + 1/rho. m: the moments of I_k. */
-static inline void solve_moments(const double m[5], double rho, double weight[3])
-{
-    const double right[3] = {1, 1, 3 + 1 / rho};
-    const double c00 = m[2] * m[4] - m[3] * m[3], c01 = m[2] * m[3] - m[1] * m[4], c02 = m[1] * m[3] - m[2] * m[2],
-                 c11 = m[0] * m[4] - m[2] * m[2], c12 = m[1] * m[2] - m[0] * m[3], c22 = m[0] * m[2] - m[1] * m[1];
-    const double determinant = m[0] * c00 + m[1] * c01 + m[2] * c02;
-    weight[0] = (c00 * right[0] + c01 * right[1] + c02 * right[2]) / determinant;
-    weight[1] = (c01 * right[0] + c11 * right[1] + c12 * right[2]) / determinant;
-    weight[2] = (c02 * right[0] + c12 * right[1] + c22 * right[2]) / determinant;
-}
-
-/* The series for steps whose h G is `reach`, 0 <= reach <= most_damping. */
-static inline damping_series damping_series_for(double reach)
-{
-    if (reach <= 0.6)
-        return (damping_series){.terms = 2};
-    const double rho = reach * 0.5 * (1 + 0x1p-10); /* a little more, for rounding errors of the bound */
-    const unsigned wanted = (unsigned)ceil(spring_sqrt(2.6 * reach + 1)), terms = wanted < 3 ? 3 : wanted;
-    const unsigned from = 20 + (unsigned)(10 * spring_sqrt(rho)), start = from > terms + 10 ? from : terms + 10;
-    double above = 0, here = 1e-30; /* I_start < 1e-21 I_0 */
-    damping_series p = {.terms = terms, .rho = rho};
-    double moment[5] = {0};
-    for (unsigned k = start; k + 1 > 0; k--) {
-        if (k == terms) {
-            p.last = here;
-            p.beyond_last = above;
-        }
-        double term = k <= terms ? (k > 0 ? 2 * here : here) : 0;
-        for (int j = 0; j < 5; j++) {
-            moment[j] += term;
-            term *= (double)k * k / rho;
-        }
-        if (k > 0)
-            bessel_step(rho, k, &above, &here);
-    }
-    /* in units of I_0 */
-    p.last /= here;
-    p.beyond_last /= here;
-    for (int j = 0; j < 5; j++)
-        moment[j] /= here;
-    solve_moments(moment, rho, p.weight);
-    return p;
-}
-
-/* The coefficients of term k, and what those of term k - 1 follow from. */
-typedef struct series_term {
-    unsigned k;
-    double above, here; /* I_{k+1} and I_k */
-    double c, d, e;
-    double sum_c, sums_c, sum_d, sums_d; /* of terms k + 1 ... s, and of such sums */
-} series_term;
-
-static inline void find_series_term(const damping_series *p, series_term *t)
-{
-    const double K = (double)t->k * t->k / p->rho;
-    t->c = t->here * (p->weight[0] + K * (p->weight[1] + K * p->weight[2]));
-    t->d = 4 / p->rho * t->sums_c;
-    t->e = 2 / p->rho * t->sums_d;
-}
-
-static inline series_term last_series_term(const damping_series *p)
-{
-    series_term t = {.k = p->terms, .above = p->beyond_last, .here = p->last};
-    find_series_term(p, &t);
-    return t;
-}
-
-static inline void previous_series_term(const damping_series *p, series_term *t)
-{
-    t->sum_c += t->c;
-    t->sums_c += t->sum_c;
-    t->sum_d += t->d;
-    t->sums_d += t->sum_d;
-    bessel_step(p->rho, t->k--, &t->above, &t->here);
-    find_series_term(p, t);
-}
-
 /* ------------------------------------------------------------------------------------------------ pressed particles */
 
 typedef struct pressed_list {
@@ -175,8 +85,6 @@ static inline void add_normal(pressed_particle *p, uint32_t axes, const scalar n
     p->freedom = FREE_ALONG_LINE;
 }
 
-enum { most_surfaces = 16 }; /* that press a particle; further ones are ignored */
-
 /* How a collider that particle i touched in the last step acts on it. It presses if the particle does not leave the
    surface, and its residual points into the collider. Static friction holds a pressed particle that does not slide. */
 typedef enum pressing { NOT_PRESSED, PRESSED, PRESSED_AND_HELD } pressing;
@@ -214,15 +122,10 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
                                    contact_surface surface[most_surfaces])
 {
     const contact_setting *const t = &s->contacts.setting;
-    contact_particle particle = {0};
+    contact_particle particle = {.touched = touched};
     scene_contact_particle(s->scene, i, &particle);
-    unsigned count = 0;
-    for (unsigned k = 0; k < t->count && count + 3 <= most_surfaces; k++)
-        if ((touched >> k & 1) != 0)
-            count += spring_contact_surfaces(&t->body[k], &particle, at_end,
-                                             load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon,
-                                             surface + count);
-    return count;
+    return spring_contact_surfaces(t->body, t->count, &particle, at_end,
+                                   load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon, surface);
 }
 
 /* Finds the pressed particles, and takes their loads out of the residual. */
@@ -385,13 +288,13 @@ static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed
     const bool two = p->terms == 2;
     series_term t = {0};
     if (!two) {
-        t = last_series_term(p);
-        previous_series_term(p, &t);
+        t = spring_last_term(p);
+        spring_previous_term(p, &t);
     }
     const double last = t.d;
     for (unsigned k = p->terms - 1; k-- > 0;) {
         if (!two)
-            previous_series_term(p, &t);
+            spring_previous_term(p, &t);
         const bool first = k + 2 == p->terms, second = k + 3 == p->terms;
         const double share = k > 0 ? 1 : 0.5, times = k > 0 ? 2 : 1;
         const double weight = two ? (double)s->h / 2 : times * (first ? last : 1) * (double)s->h / p->rho;

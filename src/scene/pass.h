@@ -4,17 +4,10 @@
 #define SPRINGSTEP_PASS_H
 
 #include "contact_pass.h"
+#include "damping_series.h"
 #include "steppers.h"
 
 #include <string.h>
-
-/* The series of an exponential kick; see exponential_kick.h. */
-typedef struct damping_series {
-    unsigned terms;           /* s; 0: links are damped explicitly */
-    double rho;               /* the following are for s > 2 */
-    double last, beyond_last; /* I_s and I_{s+1}, divided by I_0 */
-    double weight[3];         /* a, b, e */
-} damping_series;
 
 /* One step, from the state in one buffer to the state in the other or the same buffer. */
 struct scene_step {

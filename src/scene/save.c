@@ -399,58 +399,15 @@ static void settle_links(spring_scene *s, bool damped)
 
 #include "../simd/size_begin.h"
 
-/* Colliders: the shape and the mask, and numbers in the order of this table. */
-static const struct {
-    size_t offset, count;
-} collider_numbers[] = {
-    {offsetof(spring_collider, at), 3},           {offsetof(spring_collider, to), 3},
-    {offsetof(spring_collider, axis), 9},         {offsetof(spring_collider, half), 3},
-    {offsetof(spring_collider, radius), 1},       {offsetof(spring_collider, velocity), 3},
-    {offsetof(spring_collider, velocity_to), 3},  {offsetof(spring_collider, spin), 3},
-    {offsetof(spring_collider, friction), 1},     {offsetof(spring_collider, restitution), 1},
-    {offsetof(spring_collider, acceleration), 3}, {offsetof(spring_collider, spin_acceleration), 3},
-    {offsetof(spring_collider, surface), 3},      {offsetof(spring_collider, thickness), 1},
-    {offsetof(spring_collider, bound), 1},
-};
-enum { collider_fields = sizeof collider_numbers / sizeof collider_numbers[0], collider_words = 1 + 41 };
-
-/* Collider i: as it is, after it has been saved, or loaded, with the function of collider i of the scene. */
-static spring_collider moved_collider(const spring_scene *s, uint8_t *state, size_t i, bool load)
-{
-    const spring_collider *const own = scene_read(s, ARRAY_COLLIDERS);
-    spring_collider c = i < s->colliders ? own[i] : (spring_collider){0};
-    uint64_t first = c.shape | (uint64_t)c.mask << 32;
-    state += i * collider_words * word_bytes;
-    move_numbers(&first, state, 1, word_bytes, load);
-    c.shape = (spring_shape)(uint32_t)first;
-    c.mask = (uint32_t)(first >> 32);
-    state += word_bytes;
-    for (int k = 0; k < collider_fields; state += collider_numbers[k++].count * word_bytes)
-        move_numbers((char *)&c + collider_numbers[k].offset, state, collider_numbers[k].count, word_bytes, load);
-    return c;
-}
-
 static void move_colliders(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    spring_collider *const own = scene_memory(s, row->array);
-    for (size_t i = 0; i < row->count; i++) {
-        const spring_collider moved = moved_collider(s, state, i, load);
-        if (load)
-            own[i] = moved;
-    }
+    spring_state_colliders(scene_memory(s, row->array), s->colliders, row->count, state, load);
 }
 
 static bool colliders_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
-    const spring_collider *const own = scene_read(a->s, row->array);
-    for (size_t i = 0; i < row->count && fine; i++) {
-        const spring_collider c = moved_collider(a->s, state, i, true);
-        const bool custom = i < a->s->colliders && own[i].shape == SPRING_CUSTOM;
-        const uint32_t shape = (uint32_t)word_at(state + i * collider_words * word_bytes);
-        fine = shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
-               spring_scene_check_colliders(a->s, &c, 1, NULL, NULL) == SPRING_OK;
-    }
-    return fine;
+    return fine && spring_state_colliders_valid(scene_read(a->s, row->array), a->s->colliders, row->count, state,
+                                                sizeof(scalar), (double)a->s->largest_radius, a->s->layout.axes);
 }
 
 #include "../simd/size_end.h"

@@ -10,6 +10,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <springstep/scene.h>
+
 enum { word_bytes = sizeof(uint64_t) };
 
 static inline bool little_endian(void)
@@ -78,5 +80,15 @@ SPRING_INTERNAL uint64_t spring_state_check(const uint8_t *state, size_t bytes);
    less than the largest; and not negative, unless any_sign. number: [bytes] */
 SPRING_INTERNAL bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool any_sign,
                                         uint64_t headroom);
+
+enum { collider_words = 1 + 41 }; /* of a saved collider */
+
+/* Loads or saves `count` colliders of a scene, of which `set` are set. A loaded collider keeps its function. */
+SPRING_INTERNAL void spring_state_colliders(spring_collider *own, uint32_t set, size_t count, uint8_t *state,
+                                            bool load);
+
+/* Whether saved colliders are valid. The last arguments are those of spring_collider_invalid_field(). */
+SPRING_INTERNAL bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size_t count,
+                                                  uint8_t *state, size_t number, double radius, uint32_t axes);
 
 #endif

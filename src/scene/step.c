@@ -95,7 +95,7 @@ static void choose_damping(scene_step *step, scene_links *links, const method_li
     if (step->dt <= limits->explicit_limit(bounds))
         return;
     const double reach = step->dt * bounds->link_damping;
-    step->damping = damping_series_for(fmin(reach, most_damping));
+    step->damping = spring_damping_series(fmin(reach, most_damping));
     links->terms = FREEZING_TERMS;
     if (s->roots_dt != step->dt)
         spring_scene_find_roots(s, step->dt, most_damping);

@@ -16,10 +16,10 @@ typedef struct coefficients {
 
 static coefficients coefficients_of(double reach)
 {
-    const damping_series p = damping_series_for(reach);
+    const damping_series p = spring_damping_series(reach);
     coefficients all = {.terms = p.terms, .rho = p.rho};
     CHECK(p.terms > 2 && p.terms < most_terms, "a series");
-    for (series_term t = last_series_term(&p);; previous_series_term(&p, &t)) {
+    for (series_term t = spring_last_term(&p);; spring_previous_term(&p, &t)) {
         all.c[t.k] = t.c;
         all.d[t.k] = t.d;
         all.e[t.k] = t.e;

@@ -143,16 +143,16 @@ static void sum_series(plain_kick *k, double reach, const double *x, double *sum
     static double before[3 * most], now[3 * most], next[3 * most];
     static double d[512], e[512];
     const size_t count = k->axes * k->def->particles;
-    const damping_series p = damping_series_for(reach);
+    const damping_series p = spring_damping_series(reach);
     const double rho = p.terms == 2 ? 1 : p.rho;
     memset(e, 0, sizeof e);
     if (p.terms == 2) { /* 1 - z/2 = 1/2 + Y/2 for rho = 1 */
         d[0] = 1;
         d[1] = 0.5;
     } else {
-        series_term t = last_series_term(&p);
+        series_term t = spring_last_term(&p);
         while (t.k > 0) {
-            previous_series_term(&p, &t);
+            spring_previous_term(&p, &t);
             d[t.k] = t.d;
             e[t.k] = t.e;
         }
@@ -205,7 +205,7 @@ static unsigned plain_step(plain_kick *k, const field *f, bool repeats, state *y
 {
     static double change[3 * most], force[3 * most], mean[3 * most];
     const double reach = find_roots(k);
-    const unsigned terms = damping_series_for(reach).terms;
+    const unsigned terms = spring_damping_series(reach).terms;
     const size_t count = k->axes * k->def->particles;
     for (size_t i = 0; i < count; i++)
         y->x[i] += k->h / 2 * y->v[i];
