@@ -35,22 +35,19 @@ typedef uint64_t word_group __attribute__((vector_size(2 * sizeof(uint64_t))));
 typedef uint64_t word_group;
 #endif
 
-/* Adding `one` to an exponent that is too large carries into the sign. */
-SPRING_INLINE word_group invalid_signs(const uint8_t *state, size_t words, uint64_t one, uint64_t tested, uint64_t kept)
+/* The result has the signs of numbers that are not valid: for any_sign, adding `one` to an exponent that is too large
+   carries into the sign. */
+SPRING_INLINE word_group invalid_signs(const uint8_t *state, size_t words, uint64_t one, uint64_t exponents,
+                                       bool any_sign)
 {
     word_group word = {0};
     copy_numbers(&word, state, words, word_bytes);
-    return (word & kept) | ((word & tested) + one);
+    return any_sign ? (word & exponents) + one : word | (word + one);
 }
 
-bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool any_sign, uint64_t headroom)
+SPRING_INLINE uint64_t all_invalid_signs(const uint8_t *state, size_t bytes, uint64_t one, uint64_t exponents,
+                                         bool any_sign)
 {
-    /* In single precision, a word has two numbers. */
-    const uint64_t both = number == sizeof(float) ? UINT64_C(0x100000001) : 1;
-    const uint64_t sign = number == sizeof(float) ? UINT64_C(0x80000000) : UINT64_C(0x8000000000000000);
-    const uint64_t last_bit = number == sizeof(float) ? UINT64_C(0x00800000) : UINT64_C(0x0010000000000000);
-    const uint64_t one = both * last_bit * (1 + headroom);
-    const uint64_t tested = any_sign ? both * (sign - last_bit) : UINT64_MAX, kept = any_sign ? 0 : UINT64_MAX;
     enum { group = sizeof(word_group), groups = 4 };
     word_group invalid = {0};
     uint64_t part[group / word_bytes], all = 0;
@@ -58,12 +55,23 @@ bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool 
     for (; i + groups * group <= bytes; i += groups * group) {
         SPRING_UNROLL
         for (size_t k = 0; k < groups; k++)
-            invalid |= invalid_signs(state + i + k * group, group / word_bytes, one, tested, kept);
+            invalid |= invalid_signs(state + i + k * group, group / word_bytes, one, exponents, any_sign);
     }
     for (; i < bytes; i += word_bytes)
-        invalid |= invalid_signs(state + i, 1, one, tested, kept);
+        invalid |= invalid_signs(state + i, 1, one, exponents, any_sign);
     memcpy(part, &invalid, sizeof part);
     for (size_t k = 0; k < group / word_bytes; k++)
         all |= part[k];
-    return (all & both * sign) == 0;
+    return all;
+}
+
+bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool any_sign, uint64_t headroom)
+{
+    /* In single precision, a word has two numbers. */
+    const uint64_t each = number == sizeof(float) ? UINT64_C(0x100000001) : 1;
+    const uint64_t sign = each * (number == sizeof(float) ? UINT64_C(0x80000000) : UINT64_C(0x8000000000000000));
+    const uint64_t last_bit = each * (number == sizeof(float) ? UINT64_C(0x00800000) : UINT64_C(0x0010000000000000));
+    const uint64_t one = last_bit * (1 + headroom), exponents = sign - last_bit;
+    return (sign & (any_sign ? all_invalid_signs(state, bytes, one, exponents, true)
+                             : all_invalid_signs(state, bytes, one, exponents, false))) == 0;
 }
