@@ -9,7 +9,8 @@ _Static_assert(sizeof(public_scene_def) == sizeof(spring_scene_def), "definition
 _Static_assert(offsetof(public_scene_def, mask) == offsetof(spring_scene_def, mask),
                "definitions have the same fields");
 
-/* Copies a definition to the type of scenes in double, which functions for both precisions have. */
+/* Copies a definition to the type of scenes in double, which functions for both precisions have. They do not call its
+   callback. */
 static const spring_scene_def *common_definition(const public_scene_def *def, spring_scene_def *copy)
 {
     if (def == NULL)

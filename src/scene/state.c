@@ -140,6 +140,8 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
     return SPRING_OK;
 }
 
+#include "../simd/size_begin.h"
+
 spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3])
 {
     if (s == NULL || gravity == NULL)
@@ -190,3 +192,5 @@ spring_scene_info spring_scene_describe(const spring_scene *s)
         .colliders = l->colliders,
     };
 }
+
+#include "../simd/size_end.h"
