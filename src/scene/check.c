@@ -6,7 +6,7 @@
 
 #include "../simd/size_begin.h"
 
-/* ------------------------------------------------------------------------------------------------------------- links */
+/* ------------------------------------------------------------------------------------------------------------ links */
 
 const char *spring_link_invalid_field(const spring_link *link, size_t number)
 {
@@ -53,7 +53,7 @@ const char *spring_weighted_overflows(const spring_weighted_link *link, size_t n
     return NULL;
 }
 
-/* -------------------------------------------------------------------------------------------------------- definition */
+/* ------------------------------------------------------------------------------------------------------- definition */
 
 typedef struct def_error {
     spring_status status;

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * The definition of a scene of either precision: its values with their defaults, and functions that are compiled once for
- * both precisions. They have the number of bytes of a number of the scene, sizeof(scalar), as an argument `number`.
- */
+/* The definition of a scene of either precision: its values with their defaults, and functions that are compiled once
+   for both precisions. Their argument `number` is the number of bytes of a number of the scene, sizeof(scalar). */
 #ifndef SPRINGSTEP_DEFINITION_H
 #define SPRINGSTEP_DEFINITION_H
 
@@ -13,7 +11,7 @@
 
 #include <springstep/scene.h>
 
-/* ------------------------------------------------------------------------------------------------------------ values */
+/* ----------------------------------------------------------------------------------------------------------- values */
 
 /* A value as the scene stores it. */
 static inline double stored_value(size_t number, double value)
@@ -135,7 +133,7 @@ static inline three_points three_points_of(const spring_weighted_link *link)
     return (three_points){up ? particle[0] : particle[2], fits ? offset : 0, weight[0]};
 }
 
-/* ------------------------------------------------------------------------------------------- functions on definitions */
+/* ----------------------------------------------------------------------------------------- functions on definitions */
 
 SPRING_INTERNAL spring_status spring_definition_check(const spring_scene_def *def, size_t number, const char **field,
                                                       size_t *index);
@@ -158,7 +156,8 @@ SPRING_INTERNAL uint64_t spring_definition_ends(const spring_scene_def *def);
 SPRING_INTERNAL void spring_layout_links(const scene_layout *l, const spring_scene_def *def, uint32_t *slots,
                                          uint32_t *end_a, uint32_t *end_b, uint8_t *flags);
 
-/* The slot of the next weighted link in its band, or no_slot. next: least lower end that each band still accepts, first 0 */
+/* The slot of the next weighted link in its band, or no_slot. next: least lower end that each band still accepts, at
+   first 0 */
 SPRING_INTERNAL uint32_t spring_layout_weighted_slot(const scene_layout *l, const spring_weighted_link *link,
                                                      uint32_t next[most_bands]);
 

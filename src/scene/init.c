@@ -184,7 +184,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const public_scene_d
     return SPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------ functions on definitions */
+/* ----------------------------------------------------------------------------------------- functions on definitions */
 
 spring_status spring_scene_check(const public_scene_def *def, const char **field, size_t *index)
 {

@@ -352,7 +352,7 @@ uint32_t spring_layout_weighted_slot(const scene_layout *l, const spring_weighte
     return points.offset > 0 ? slot_in_band(l, BAND_OF_THREE_POINTS, points.offset, points.lower, next) : no_slot;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- ends */
+/* ------------------------------------------------------------------------------------------------------------- ends */
 
 uint8_t spring_weighted_points(const spring_weighted_link *link, uint32_t particle[4], uint8_t place[4])
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Stable steps of scenes, from bounds on the sums over the links of a particle (stable_step.c), and storage. The formulas
-   of the methods are in steppers.c. */
+/* Stable steps of scenes, from bounds on the sums over the links of a particle (stable_step.c), and storage of each
+   method. The formulas of the methods are in steppers.c. */
 #include "method_limits.h"
 
 #include "../spring/roots.h"

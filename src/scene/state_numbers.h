@@ -76,8 +76,8 @@ static inline uint64_t hashed(uint64_t hash, uint64_t word)
 /* bytes: a multiple of 8 */
 SPRING_INTERNAL uint64_t spring_state_check(const uint8_t *state, size_t bytes);
 
-/* Whether all numbers of a padded section are finite, also if they are multiplied by a number below 2^headroom, which is
-   less than the largest; and not negative, unless any_sign. number: [bytes] */
+/* Whether all numbers of a padded section are finite, also if they are multiplied by a number below 2^headroom, which
+   is less than the largest; and not negative, unless any_sign. number: [bytes] */
 SPRING_INTERNAL bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool any_sign,
                                         uint64_t headroom);
 
