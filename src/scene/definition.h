@@ -112,7 +112,6 @@ static inline uint32_t link_flags(const spring_scene_def *def)
 /* A link whose weights are (w, -2w, w), at particles with a constant offset, and whose rest length is 0. */
 typedef struct three_points {
     uint32_t lower, offset; /* offset: 0 if the link is none */
-    double weight;          /* w */
 } three_points;
 
 static inline three_points three_points_of(const spring_weighted_link *link)
@@ -130,7 +129,7 @@ static inline three_points three_points_of(const spring_weighted_link *link)
     const bool evenly = up ? particle[2] > particle[1] && particle[2] - particle[1] == offset
                            : particle[1] > particle[2] && particle[1] - particle[2] == offset;
     const bool fits = points == 3 && evenly && weight[0] == weight[2] && weight[1] == -2 * weight[0] && link->rest == 0;
-    return (three_points){up ? particle[0] : particle[2], fits ? offset : 0, weight[0]};
+    return (three_points){up ? particle[0] : particle[2], fits ? offset : 0};
 }
 
 /* ----------------------------------------------------------------------------------------- functions on definitions */
