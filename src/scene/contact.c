@@ -533,13 +533,15 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, unsigned i, vector3 x, vector3 change)
+/* Collider i changes the velocity at x by `change`, and then displaces the particle by `shift`, with the velocity w. */
+static void record(const contact_setting *s, const contact_particle *p, unsigned i, vector3 x, vector3 change,
+                   vector3 shift, vector3 w)
 {
     if (!s->records)
         return;
     const vector3 impulse = scale(-p->mass, change);
     const vector3 arm = {x.x - s->origin[i][0], x.y - s->origin[i][1], x.z - s->origin[i][2]};
-    const vector3 moment = outer(arm, impulse);
+    const vector3 moment = add_scaled(outer(arm, impulse), -p->mass, outer(shift, w));
     double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
     linear[0] += impulse.x;
     linear[1] += impulse.y;
@@ -790,13 +792,11 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 static int press_late(const contact_setting *s, contact_particle *p, const meeting *m)
 {
     const contact_body *const b = m->b;
-    const vector3 u = subtract(p->w, m->velocity), x = add_scaled(p->x0, m->fraction, p->d);
+    const vector3 u = subtract(p->w, m->velocity);
     const double rate = inner(u, m->n), lost = rate * s->h < 0 ? -rate : 0;
     const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(lost));
-    const vector3 change = subtract(scale(lost, m->n), friction);
-    p->w = add(p->w, change);
+    p->w = add(p->w, subtract(scale(lost, m->n), friction));
     p->d = add_scaled(p->d, -m->left, friction);
-    record(s, p, m->index, x, change);
     /* Onto the tangent plane, in the frame of the body: outside, if the body is convex. */
     const vector3 end = end_in_frame(b, p);
     const double inward = m->push > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->push
@@ -889,7 +889,6 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         }
         shift = subtract(scale(m->left, end.mean), along);
     }
-    vector3 change;
     if (rests && end.sticks && length3(u0) * duration <= m->slop && !b->slips) { /* carried exactly */
         vector3 there = m->start;
         if (b->shape == SPRING_CAPSULE)
@@ -897,17 +896,15 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         if (m->at.gap < -m->slop / 2) /* rounding errors of many steps */
             there = add_scaled(there, -m->at.gap, m->at.normal);
         p->d = b->moves ? subtract(place_out(&b->end, there), p->x0) : zero3;
-        change = subtract(scale(1 / s->h, p->d), p->w);
         p->w = scale(1 / s->h, p->d);
         clear = m->at.gap > -m->slop / 2;
     } else {
-        change = scale(s->h < 0 ? -lambda : lambda, m->n);
+        vector3 change = scale(s->h < 0 ? -lambda : lambda, m->n);
         if (mu > 0)
             change = add(change, subtract(end.kick, mean));
         p->w = add(p->w, change);
         p->d = add_scaled(add(p->d, shift), lambda * duration, m->n);
     }
-    record(s, p, m->index, x0, change);
     return clear ? CONTACT | CLEAR : CONTACT;
 }
 
@@ -923,7 +920,6 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
         const double normal = -(1 + b->restitution) * rate;
         const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(normal));
         const vector3 change = subtract(scale(normal, m->n), friction);
-        record(s, p, m->index, add_scaled(p->x0, m->fraction, p->d), change);
         p->w = add(p->w, change);
         p->d = add_scaled(p->d, m->left, change);
         start = add(start, change);
@@ -986,18 +982,19 @@ static void walk(const contact_setting *s, contact_particle *p, const meeting *m
         return;
     const double normal = -(1 + b->restitution) * rate;
     const vector3 friction = shortened(tangential(u, n), b->friction * p->friction * fabs(normal));
-    const vector3 change = subtract(scale(normal, n), friction);
-    p->w = add(p->w, change);
-    record(s, p, m->index, x, change);
+    p->w = add(p->w, subtract(scale(normal, n), friction));
 }
 
 static int collide(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    const int found = collide_once(s, p, m);
-    if (m->b->shape != SPRING_CUSTOM)
-        return found;
-    walk(s, p, m);
-    return CONTACT;
+    const vector3 d = p->d, w = p->w;
+    int found = collide_once(s, p, m);
+    if (m->b->shape == SPRING_CUSTOM) {
+        walk(s, p, m);
+        found = CONTACT;
+    }
+    record(s, p, m->index, add(p->x0, d), subtract(p->w, w), subtract(p->d, d), p->w);
+    return found;
 }
 
 /* ------------------------------------------------------------------------------------------------- several colliders */
@@ -1121,7 +1118,7 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
             continue;
         const vector3 change = scale(sign * c[i].multiplier, c[i].n);
         *v = add(*v, change);
-        record(s, p, c[i].index, x, change);
+        record(s, p, c[i].index, x, change, zero3, zero3);
     }
     for (unsigned i = 0; i < count; i++) {
         if (!(c[i].multiplier > 0))
@@ -1135,7 +1132,7 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
                 friction = scale(inner(friction, line) / square, line);
         }
         *v = subtract(*v, friction);
-        record(s, p, c[i].index, x, scale(-1, friction));
+        record(s, p, c[i].index, x, scale(-1, friction), zero3, zero3);
     }
 }
 
@@ -1156,7 +1153,7 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
         *v = c->velocity;
     else
         *v = subtract(add_scaled(*v, -rate, c->n), scale(limit / spring_sqrt(square), along));
-    record(s, p, c->index, x, subtract(*v, before));
+    record(s, p, c->index, x, subtract(*v, before), zero3, zero3);
 }
 
 void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
@@ -1216,6 +1213,8 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
         if (!any_inside)
             break;
         p->d = add(p->d, least_change(c, count));
+        for (unsigned i = 0; i < count; i++)
+            record(s, p, c[i].index, x, zero3, scale(c[i].multiplier, c[i].n), p->w);
         nearby |= near_path(s, p);
     }
     if (inside == 0)
