@@ -533,22 +533,22 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-/* Collider i changes the velocity at x by `change`, and then displaces the particle by `shift`, with the velocity w. */
-static void record(const contact_setting *s, const contact_particle *p, unsigned i, vector3 x, vector3 change,
-                   vector3 shift, vector3 w)
+/* Collider i changes the velocity of a particle from w to w1, and the place where it is afterwards from x to x1. */
+SPRING_NOINLINE void record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
+                            const vector3 *w, const vector3 *x1, const vector3 *w1)
 {
     if (!s->records)
         return;
-    const vector3 impulse = scale(-p->mass, change);
-    const vector3 arm = {x.x - s->origin[i][0], x.y - s->origin[i][1], x.z - s->origin[i][2]};
-    const vector3 moment = add_scaled(outer(arm, impulse), -p->mass, outer(shift, w));
+    const double *const origin = s->origin[i];
+    const vector3 arm = {x->x - origin[0], x->y - origin[1], x->z - origin[2]};
+    const vector3 change = subtract(*w, *w1), moment = add(outer(arm, change), outer(subtract(*x, *x1), *w1));
     double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
-    linear[0] += impulse.x;
-    linear[1] += impulse.y;
-    linear[2] += impulse.z;
-    angular[0] += moment.x;
-    angular[1] += moment.y;
-    angular[2] += moment.z;
+    linear[0] += p->mass * change.x;
+    linear[1] += p->mass * change.y;
+    linear[2] += p->mass * change.z;
+    angular[0] += p->mass * moment.x;
+    angular[1] += p->mass * moment.y;
+    angular[2] += p->mass * moment.z;
 }
 
 /* --------------------------------------------------------------------------------------------------------- friction */
@@ -987,13 +987,14 @@ static void walk(const contact_setting *s, contact_particle *p, const meeting *m
 
 static int collide(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    const vector3 d = p->d, w = p->w;
+    const vector3 x = add(p->x0, p->d), w = p->w;
     int found = collide_once(s, p, m);
     if (m->b->shape == SPRING_CUSTOM) {
         walk(s, p, m);
         found = CONTACT;
     }
-    record(s, p, m->index, add(p->x0, d), subtract(p->w, w), subtract(p->d, d), p->w);
+    const vector3 x1 = add(p->x0, p->d);
+    record(s, p, m->index, &x, &w, &x1, &p->w);
     return found;
 }
 
@@ -1116,9 +1117,9 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
     for (unsigned i = 0; i < count; i++) {
         if (!(c[i].multiplier > 0))
             continue;
-        const vector3 change = scale(sign * c[i].multiplier, c[i].n);
-        *v = add(*v, change);
-        record(s, p, c[i].index, x, change, zero3, zero3);
+        const vector3 before = *v;
+        *v = add_scaled(before, sign * c[i].multiplier, c[i].n);
+        record(s, p, c[i].index, &x, &before, &x, v);
     }
     for (unsigned i = 0; i < count; i++) {
         if (!(c[i].multiplier > 0))
@@ -1131,8 +1132,9 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
             if (k != i && c[k].multiplier > 0 && square > 0)
                 friction = scale(inner(friction, line) / square, line);
         }
-        *v = subtract(*v, friction);
-        record(s, p, c[i].index, x, scale(-1, friction), zero3, zero3);
+        const vector3 before = *v;
+        *v = subtract(before, friction);
+        record(s, p, c[i].index, &x, &before, &x, v);
     }
 }
 
@@ -1153,7 +1155,7 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
         *v = c->velocity;
     else
         *v = subtract(add_scaled(*v, -rate, c->n), scale(limit / spring_sqrt(square), along));
-    record(s, p, c->index, x, subtract(*v, before), zero3, zero3);
+    record(s, p, c->index, &x, &before, &x, v);
 }
 
 void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
@@ -1213,8 +1215,10 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
         if (!any_inside)
             break;
         p->d = add(p->d, least_change(c, count));
-        for (unsigned i = 0; i < count; i++)
-            record(s, p, c[i].index, x, zero3, scale(c[i].multiplier, c[i].n), p->w);
+        for (unsigned i = 0; i < count; i++) {
+            const vector3 x1 = add_scaled(x, c[i].multiplier, c[i].n);
+            record(s, p, c[i].index, &x, &p->w, &x1, &p->w);
+        }
         nearby |= near_path(s, p);
     }
     if (inside == 0)

@@ -208,10 +208,13 @@ static void add_impulse(spring_impulse *sum, const spring_impulse *more)
     }
 }
 
-/* Adds the impulses of changes of velocity at x, where `which` is not 0. */
+/* Adds the impulses of changes of velocity at x, where `which` is not 0: what particles lost from there to the end, x1
+   with the velocity v1. */
 static void add_impulses(const spring_scene *s, const scene_contacts *t, const resting_chunk *r, const uint32_t *which,
-                         const scalar *x, size_t stride)
+                         const scalar *x, size_t stride, const scalar *x1, const scalar *v1)
 {
+    const size_t end_stride = r->particles->stride;
+    const uint32_t axes = r->particles->axes;
     const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
     spring_impulse sum = {{0}, {0}};
     unsigned c = 0; /* of the sum */
@@ -226,15 +229,17 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
         }
         const double *const origin = t->setting.origin[c];
         const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
-        const vector3 at = load_vector(x + k, stride, r->particles->axes);
+        const vector3 at = load_vector(x + k, stride, axes);
         const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
         const vector3 j = vector_times(-mass, load_vector(r->change + k, contact_chunk, 3));
+        const vector3 way = vector_minus(load_vector(x1 + k, end_stride, axes), at);
+        const vector3 p = vector_times(-mass, load_vector(v1 + k, end_stride, axes));
         sum.linear[0] += j.x;
         sum.linear[1] += j.y;
         sum.linear[2] += j.z;
-        sum.angular[0] += arm.y * j.z - arm.z * j.y;
-        sum.angular[1] += arm.z * j.x - arm.x * j.z;
-        sum.angular[2] += arm.x * j.y - arm.y * j.x;
+        sum.angular[0] += arm.y * j.z - arm.z * j.y + (way.y * p.z - way.z * p.y);
+        sum.angular[1] += arm.z * j.x - arm.x * j.z + (way.z * p.x - way.x * p.z);
+        sum.angular[2] += arm.x * j.y - arm.y * j.x + (way.x * p.y - way.y * p.x);
     }
     add_impulse(&t->setting.impulse[c], &sum);
 }
@@ -272,7 +277,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
         memcpy(r.candidate, touched, count * sizeof *touched);
         filter_candidates(s, t, &r);
         kernels->stop_resting(&r);
-        add_impulses(s, t, &r, r.done, r.place, p->stride);
+        add_impulses(s, t, &r, r.done, r.place, p->stride, r.place, m->v + from);
     }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
@@ -313,7 +318,7 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
         kernels->move_resting(&r);
-        add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk);
+        add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk, m->x + from, m->v + from);
     }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
