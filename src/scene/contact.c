@@ -987,7 +987,9 @@ static void walk(const contact_setting *s, contact_particle *p, const meeting *m
 
 static int collide(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    const vector3 x = add(p->x0, p->d), w = p->w;
+    const vector3 x = add(p->x0, p->d);
+    vector3 w;
+    put(&w, p->w);
     int found = collide_once(s, p, m);
     if (m->b->shape == SPRING_CUSTOM) {
         walk(s, p, m);

@@ -200,6 +200,13 @@ static void filter_candidates(const spring_scene *s, const scene_contacts *t, re
     }
 }
 
+static inline void add_moment(double sum[3], vector3 arm, vector3 j) /* arm x j */
+{
+    sum[0] += arm.y * j.z - arm.z * j.y;
+    sum[1] += arm.z * j.x - arm.x * j.z;
+    sum[2] += arm.x * j.y - arm.y * j.x;
+}
+
 static void add_impulse(spring_impulse *sum, const spring_impulse *more)
 {
     for (int a = 0; a < 3; a++) {
@@ -208,14 +215,14 @@ static void add_impulse(spring_impulse *sum, const spring_impulse *more)
     }
 }
 
-/* Adds the impulses of changes of velocity at x, where `which` is not 0: what particles lost from there to the end, x1
-   with the velocity v1. */
+/* Adds the impulses of changes of velocity at x, where `which` is not 0. They also displace particles to x1, with the
+   velocity v1; NULL: they do not. */
 static void add_impulses(const spring_scene *s, const scene_contacts *t, const resting_chunk *r, const uint32_t *which,
                          const scalar *x, size_t stride, const scalar *x1, const scalar *v1)
 {
+    const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
     const size_t end_stride = r->particles->stride;
     const uint32_t axes = r->particles->axes;
-    const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
     spring_impulse sum = {{0}, {0}};
     unsigned c = 0; /* of the sum */
     for (size_t k = 0; k < r->count; k++) {
@@ -232,14 +239,13 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
         const vector3 at = load_vector(x + k, stride, axes);
         const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
         const vector3 j = vector_times(-mass, load_vector(r->change + k, contact_chunk, 3));
-        const vector3 way = vector_minus(load_vector(x1 + k, end_stride, axes), at);
-        const vector3 p = vector_times(-mass, load_vector(v1 + k, end_stride, axes));
         sum.linear[0] += j.x;
         sum.linear[1] += j.y;
         sum.linear[2] += j.z;
-        sum.angular[0] += arm.y * j.z - arm.z * j.y + (way.y * p.z - way.z * p.y);
-        sum.angular[1] += arm.z * j.x - arm.x * j.z + (way.z * p.x - way.x * p.z);
-        sum.angular[2] += arm.x * j.y - arm.y * j.x + (way.x * p.y - way.y * p.x);
+        add_moment(sum.angular, arm, j);
+        if (x1 != NULL)
+            add_moment(sum.angular, vector_minus(load_vector(x1 + k, end_stride, axes), at),
+                       vector_times(-mass, load_vector(v1 + k, end_stride, axes)));
     }
     add_impulse(&t->setting.impulse[c], &sum);
 }
@@ -277,7 +283,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
         memcpy(r.candidate, touched, count * sizeof *touched);
         filter_candidates(s, t, &r);
         kernels->stop_resting(&r);
-        add_impulses(s, t, &r, r.done, r.place, p->stride, r.place, m->v + from);
+        add_impulses(s, t, &r, r.done, r.place, p->stride, NULL, NULL);
     }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
