@@ -88,6 +88,8 @@ typedef struct pressed_particle {
     scalar line[3];     /* unit vector: the normal, or the line along which the particle is free */
     scalar outwards[3]; /* sum of the normals */
     scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
+    unsigned collider;  /* the first one that it presses on */
+    double lost[3];     /* [m/s] velocity that colliders took from it during the kick */
 } pressed_particle;
 
 typedef struct scene_layout {
@@ -316,6 +318,7 @@ static inline void scene_contact_particle(const spring_scene *s, size_t i, conta
     p->mass = inverse_mass != NULL ? 1 / (double)inverse_mass[i] : s->mass_all;
     p->friction = friction != NULL ? (double)friction[i] : 1;
     p->bits = bits != NULL ? bits[i] : UINT32_MAX;
+    p->kick = (vector3){0, 0, 0};
     p->wrong = false;
 }
 

@@ -533,15 +533,15 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-/* Collider i changes the velocity of a particle from w to w1, and the place where it is afterwards from x to x1. */
-SPRING_NOINLINE void record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
-                            const vector3 *w, const vector3 *x1, const vector3 *w1)
+void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
+                           const vector3 *w, const vector3 *x1, const vector3 *w1)
 {
     if (!s->records)
         return;
     const double *const origin = s->origin[i];
     const vector3 arm = {x->x - origin[0], x->y - origin[1], x->z - origin[2]};
-    const vector3 change = subtract(*w, *w1), moment = add(outer(arm, change), outer(subtract(*x, *x1), *w1));
+    const vector3 change = subtract(*w, *w1), way = subtract(*x, *x1);
+    const vector3 moment = add(outer(arm, change), outer(way, add(*w1, p->kick)));
     double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
     linear[0] += p->mass * change.x;
     linear[1] += p->mass * change.y;
@@ -996,7 +996,7 @@ static int collide(const contact_setting *s, contact_particle *p, const meeting 
         found = CONTACT;
     }
     const vector3 x1 = add(p->x0, p->d);
-    record(s, p, m->index, &x, &w, &x1, &p->w);
+    spring_contact_record(s, p, m->index, &x, &w, &x1, &p->w);
     return found;
 }
 
@@ -1121,7 +1121,7 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
             continue;
         const vector3 before = *v;
         *v = add_scaled(before, sign * c[i].multiplier, c[i].n);
-        record(s, p, c[i].index, &x, &before, &x, v);
+        spring_contact_record(s, p, c[i].index, &x, &before, &x, v);
     }
     for (unsigned i = 0; i < count; i++) {
         if (!(c[i].multiplier > 0))
@@ -1136,7 +1136,7 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
         }
         const vector3 before = *v;
         *v = subtract(before, friction);
-        record(s, p, c[i].index, &x, &before, &x, v);
+        spring_contact_record(s, p, c[i].index, &x, &before, &x, v);
     }
 }
 
@@ -1157,7 +1157,7 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
         *v = c->velocity;
     else
         *v = subtract(add_scaled(*v, -rate, c->n), scale(limit / spring_sqrt(square), along));
-    record(s, p, c->index, &x, &before, &x, v);
+    spring_contact_record(s, p, c->index, &x, &before, &x, v);
 }
 
 void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
@@ -1219,7 +1219,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
         p->d = add(p->d, least_change(c, count));
         for (unsigned i = 0; i < count; i++) {
             const vector3 x1 = add_scaled(x, c[i].multiplier, c[i].n);
-            record(s, p, c[i].index, &x, &p->w, &x1, &p->w);
+            spring_contact_record(s, p, c[i].index, &x, &p->w, &x1, &p->w);
         }
         nearby |= near_path(s, p);
     }
@@ -1270,7 +1270,7 @@ unsigned spring_contact_surfaces(const contact_body *b, const contact_particle *
     contact_particle particle = *p;
     const unsigned count = add_constraints(&particle, b, 0, at_end, x, same_place * slop_of(&s, p, b), c, 0);
     for (unsigned i = 0; i < count; i++)
-        surface[i] = (contact_surface){c[i].n, c[i].velocity, c[i].friction};
+        surface[i] = (contact_surface){c[i].n, c[i].velocity, c[i].friction, 0};
     return count;
 }
 

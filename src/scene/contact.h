@@ -66,6 +66,7 @@ typedef struct contact_particle {
     vector3 accel;       /* [m/s^2] of the kick before the drift */
     vector3 w;           /* [m/s] velocity of the drift */
     vector3 d;           /* [m] displacement */
+    vector3 kick;        /* [m/s] velocity at the end minus w, if the drift is that of a whole step */
     double radius, mass; /* [m], [kg] */
     double friction;     /* factor of the friction of colliders */
     uint32_t bits;       /* its mask */
@@ -79,6 +80,7 @@ typedef struct contact_surface {
     vector3 normal;   /* out of the collider */
     vector3 velocity; /* [m/s] */
     double friction;  /* with this particle */
+    unsigned index;   /* of the collider */
 } contact_surface;
 
 /* Places a collider for a drift that starts and ends t0 and t1 after the collider was set. */
@@ -91,6 +93,11 @@ SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_part
 /* Removes from v the components into the colliders that are touched, with friction: the last kick, at x. */
 SPRING_INTERNAL void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end,
                                          vector3 x, vector3 *v);
+
+/* Adds what collider i is given by a change of the velocity of a particle from w to w1, and of the place where it is
+   afterwards from x to x1. */
+SPRING_INTERNAL void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i,
+                                           const vector3 *x, const vector3 *w, const vector3 *x1, const vector3 *w1);
 
 /* The surfaces that a particle touches at x, at the start or the end of the drift: those whose gap is the least.
    Returns their number. */

@@ -110,7 +110,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     scalar accel[3];
     const size_t stride = p->stride;
     const uint32_t axes = p->axes;
-    vector3 v0 = vector_from(q->v0), second_kick = {0, 0, 0};
+    vector3 v0 = vector_from(q->v0);
     bool fine = true;
     if (m->contacts == KICK_DRIFT_CONTACTS) {
         if (m->ends_previous) {
@@ -135,7 +135,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
         q->c.d = vector_minus(load_vector(m->x + i, stride, axes), q->c.x0);
         q->c.w = vector_times(1 / h, q->c.d);
         q->c.accel = vector_times(1 / h, vector_minus(v1, v0));
-        second_kick = vector_minus(v1, q->c.w);
+        q->c.kick = vector_minus(v1, q->c.w);
     }
     q->c.v0 = v0;
     if (!finite_vector(q->c.d) || !finite_vector(q->c.x0)) /* a function of a custom body sees finite numbers only */
@@ -147,7 +147,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     const vector3 x = vector_plus(q->c.x0, 1, q->c.d);
     vector3 v = q->c.w;
     if (m->contacts == WHOLE_STEP_CONTACTS) {
-        v = vector_plus(v, 1, second_kick);
+        v = vector_plus(v, 1, q->c.kick);
         spring_contact_stop(&t->setting, &q->c, q->c.touched, true, x, &v);
     }
     store_vector(m->x + i, stride, axes, x);
