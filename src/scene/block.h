@@ -89,7 +89,7 @@ typedef struct pressed_particle {
     scalar outwards[3]; /* sum of the normals */
     scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
     unsigned collider;  /* the first one that it presses on */
-    double lost[3];     /* [m/s] velocity that colliders took from it during the kick */
+    scalar lost[3];     /* [m/s] velocity that colliders took from it in the kick; [m/s^2] before its last term */
 } pressed_particle;
 
 typedef struct scene_layout {

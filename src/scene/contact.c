@@ -28,8 +28,9 @@
  *           start is carried by the rigid motion.
  * Kick      The last kick, for colliders that were touched: v loses its components into them, by the least change
  *           with n_i.v >= n_i.V_i, with friction of at most mu times each of these. Static friction gives v = V.
- * Impulses  Each change of w or v by a contact is m times an impulse on the particle, which acts at its centre at that
- *           time.
+ * Impulses  A contact that changes the end of the path from x to x1 and the velocity from w to w1 gives m (w - w1) and
+ *           m (x * w - x1 * w1) to its collider, with the vector product. A free path keeps x * w, so this is exact for
+ *           changes at any time of the step, and for displacements.
  * Order     2 with leapfrog and RK4, also across impacts, with sliding friction, and across reversals: docs/evidence.md.
  * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
  *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983); rotations: Rodrigues (1840). The closed forms are
@@ -533,6 +534,7 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
+/* The moment is (x - x1) * w1 + (x - origin) * (w - w1). w1 stands for the velocity at the end of the step. */
 void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
                            const vector3 *w, const vector3 *x1, const vector3 *w1)
 {

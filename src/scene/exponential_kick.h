@@ -219,10 +219,10 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
     unsigned count = 0;
     for (unsigned k = 0; k < t->count && count + 3 <= most_surfaces; k++)
         if ((touched >> k & 1) != 0) {
-            const unsigned end = count + spring_contact_surfaces(
-                                             &t->body[k], &particle, at_end,
-                                             load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon,
-                                             surface + count);
+            const unsigned end =
+                count + spring_contact_surfaces(&t->body[k], &particle, at_end,
+                                                load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon,
+                                                surface + count);
             while (count < end)
                 surface[count++].index = k;
         }
@@ -250,9 +250,8 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
             if (pressed)
                 add_normal(p, axes, normal);
             else
-                *p = (pressed_particle){.particle = (uint32_t)i,
-                                        .line = {normal[0], normal[1], normal[2]},
-                                        .collider = surface[k].index};
+                *p = (pressed_particle){
+                    .particle = (uint32_t)i, .line = {normal[0], normal[1], normal[2]}, .collider = surface[k].index};
             for (uint32_t a = 0; a < axes; a++)
                 p->outwards[a] += normal[a];
             if (how == PRESSED_AND_HELD)
@@ -267,7 +266,7 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
         free_component(p, axes, free);
         for (uint32_t a = 0; a < axes; a++) {
             p->load[a] = residual[a * stride + i] - free[a];
-            p->lost[a] = (double)(s->h * p->load[a]);
+            p->lost[a] = p->load[a];
             residual[a * stride + i] = free[a];
         }
         found.count++;
@@ -288,9 +287,10 @@ static inline void project_pressed(const scene_step *s, const pressed_list *pres
             vector[a] = b[a * stride + p->particle] - (from != NULL ? from[a * stride + p->particle] : 0);
         free_component(p, s->particles.axes, vector);
         for (uint32_t a = 0; a < s->particles.axes; a++) {
-            scalar *const at = &b[a * stride + p->particle], before = *at;
-            *at = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
-            p->lost[a] += (double)(before - *at) * (from != NULL ? 1 : (double)s->h);
+            scalar *const at = &b[a * stride + p->particle];
+            const scalar end = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
+            p->lost[a] = (from != NULL ? s->h * p->lost[a] : p->lost[a]) + (*at - end);
+            *at = end;
         }
     }
 }
@@ -298,7 +298,7 @@ static inline void project_pressed(const scene_step *s, const pressed_list *pres
 /* Adds what collider k is given if the velocity of particle i at x loses `lost`. */
 static inline void record_change(const scene_step *s, size_t i, unsigned k, const scalar *x, vector3 lost)
 {
-    contact_particle particle = {0};
+    contact_particle particle;
     const vector3 at = load_vector(x + i, s->particles.stride, s->particles.axes), zero = {0, 0, 0};
     scene_contact_particle(s->scene, i, &particle);
     spring_contact_record(&s->contacts.setting, &particle, k, &at, &lost, &at, &zero);
@@ -335,9 +335,9 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
         for (uint32_t a = 0; a < axes && along < 0; a++) {
             scalar *const v = &v1[a * p->stride + one->particle], before = *v;
             *v += s->h * (along / square) * one->outwards[a];
-            one->lost[a] += (double)(before - *v);
+            one->lost[a] += before - *v;
         }
-        record_change(s, one->particle, one->collider, x, (vector3){one->lost[0], one->lost[1], one->lost[2]});
+        record_change(s, one->particle, one->collider, x, vector_from(one->lost));
     }
 }
 

@@ -510,7 +510,8 @@ static void balance(spring_method method, uint32_t axes, double *worst)
         last = momenta_of(&m, s);
         size += last.size;
         double middle[3], moment[3];
-        for (int a = 0; a < 3; a++) /* where gravity acts: at the start, at both ends, or in the middle before contacts */
+        for (int a = 0; a < 3;
+             a++) /* where gravity acts: at the start, at both ends, or in the middle before contacts */
             middle[a] = method == SPRING_SYMPLECTIC_EULER     ? before.place[a]
                         : method == SPRING_LEAPFROG && !heavy ? (before.place[a] + last.place[a]) / 2
                                                               : before.place[a] + h / 2 * before.linear[a];
