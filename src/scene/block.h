@@ -28,6 +28,8 @@ typedef struct pressed_particle {
     scalar line[3];     /* unit vector: the normal, or the line along which the particle is free */
     scalar outwards[3]; /* sum of the normals */
     scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
+    unsigned collider;  /* the first one that it presses on */
+    scalar lost[3];     /* [m/s] velocity that colliders took from it in the kick; [m/s^2] before its last term */
 } pressed_particle;
 
 /* The forces that a step keeps for the next step, in the force array of the buffer that holds the state. Only steps
@@ -228,6 +230,7 @@ static inline void scene_contact_particle(const spring_scene *s, size_t i, conta
     p->mass = inverse_mass != NULL ? 1 / (double)inverse_mass[i] : s->mass_all;
     p->friction = friction != NULL ? (double)friction[i] : 1;
     p->bits = bits != NULL ? bits[i] : UINT32_MAX;
+    p->kick = (vector3){0, 0, 0};
     p->wrong = false;
 }
 

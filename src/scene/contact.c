@@ -28,8 +28,9 @@
  *           start is carried by the rigid motion.
  * Kick      The last kick, for colliders that were touched: v loses its components into them, by the least change
  *           with n_i.v >= n_i.V_i, with friction of at most mu times each of these. Static friction gives v = V.
- * Impulses  Each change of w or v by a contact is m times an impulse on the particle, which acts at its centre at that
- *           time.
+ * Impulses  A contact that changes the end of the path from x to x1 and the velocity from w to w1 gives m (w - w1) and
+ *           m (x * w - x1 * w1) to its collider, with the vector product. A free path keeps x * w, so this is exact for
+ *           changes at any time of the step, and for displacements.
  * Order     2 with leapfrog and RK4, also across impacts, with sliding friction, and across reversals: docs/evidence.md.
  * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
  *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983); rotations: Rodrigues (1840). The closed forms are
@@ -533,20 +534,23 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, unsigned i, vector3 x, vector3 change)
+/* The moment is (x - x1) * w1 + (x - origin) * (w - w1). w1 stands for the velocity at the end of the step. */
+void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
+                           const vector3 *w, const vector3 *x1, const vector3 *w1)
 {
     if (!s->records)
         return;
-    const vector3 impulse = scale(-p->mass, change);
-    const vector3 arm = {x.x - s->origin[i][0], x.y - s->origin[i][1], x.z - s->origin[i][2]};
-    const vector3 moment = outer(arm, impulse);
+    const double *const origin = s->origin[i];
+    const vector3 arm = {x->x - origin[0], x->y - origin[1], x->z - origin[2]};
+    const vector3 change = subtract(*w, *w1), way = subtract(*x, *x1);
+    const vector3 moment = add(outer(arm, change), outer(way, add(*w1, p->kick)));
     double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
-    linear[0] += impulse.x;
-    linear[1] += impulse.y;
-    linear[2] += impulse.z;
-    angular[0] += moment.x;
-    angular[1] += moment.y;
-    angular[2] += moment.z;
+    linear[0] += p->mass * change.x;
+    linear[1] += p->mass * change.y;
+    linear[2] += p->mass * change.z;
+    angular[0] += p->mass * moment.x;
+    angular[1] += p->mass * moment.y;
+    angular[2] += p->mass * moment.z;
 }
 
 /* --------------------------------------------------------------------------------------------------------- friction */
@@ -790,13 +794,11 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 static int press_late(const contact_setting *s, contact_particle *p, const meeting *m)
 {
     const contact_body *const b = m->b;
-    const vector3 u = subtract(p->w, m->velocity), x = add_scaled(p->x0, m->fraction, p->d);
+    const vector3 u = subtract(p->w, m->velocity);
     const double rate = inner(u, m->n), lost = rate * s->h < 0 ? -rate : 0;
     const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(lost));
-    const vector3 change = subtract(scale(lost, m->n), friction);
-    p->w = add(p->w, change);
+    p->w = add(p->w, subtract(scale(lost, m->n), friction));
     p->d = add_scaled(p->d, -m->left, friction);
-    record(s, p, m->index, x, change);
     /* Onto the tangent plane, in the frame of the body: outside, if the body is convex. */
     const vector3 end = end_in_frame(b, p);
     const double inward = m->push > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->push
@@ -889,7 +891,6 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         }
         shift = subtract(scale(m->left, end.mean), along);
     }
-    vector3 change;
     if (rests && end.sticks && length3(u0) * duration <= m->slop && !b->slips) { /* carried exactly */
         vector3 there = m->start;
         if (b->shape == SPRING_CAPSULE)
@@ -897,17 +898,15 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         if (m->at.gap < -m->slop / 2) /* rounding errors of many steps */
             there = add_scaled(there, -m->at.gap, m->at.normal);
         p->d = b->moves ? subtract(place_out(&b->end, there), p->x0) : zero3;
-        change = subtract(scale(1 / s->h, p->d), p->w);
         p->w = scale(1 / s->h, p->d);
         clear = m->at.gap > -m->slop / 2;
     } else {
-        change = scale(s->h < 0 ? -lambda : lambda, m->n);
+        vector3 change = scale(s->h < 0 ? -lambda : lambda, m->n);
         if (mu > 0)
             change = add(change, subtract(end.kick, mean));
         p->w = add(p->w, change);
         p->d = add_scaled(add(p->d, shift), lambda * duration, m->n);
     }
-    record(s, p, m->index, x0, change);
     return clear ? CONTACT | CLEAR : CONTACT;
 }
 
@@ -923,7 +922,6 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
         const double normal = -(1 + b->restitution) * rate;
         const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(normal));
         const vector3 change = subtract(scale(normal, m->n), friction);
-        record(s, p, m->index, add_scaled(p->x0, m->fraction, p->d), change);
         p->w = add(p->w, change);
         p->d = add_scaled(p->d, m->left, change);
         start = add(start, change);
@@ -986,18 +984,22 @@ static void walk(const contact_setting *s, contact_particle *p, const meeting *m
         return;
     const double normal = -(1 + b->restitution) * rate;
     const vector3 friction = shortened(tangential(u, n), b->friction * p->friction * fabs(normal));
-    const vector3 change = subtract(scale(normal, n), friction);
-    p->w = add(p->w, change);
-    record(s, p, m->index, x, change);
+    p->w = add(p->w, subtract(scale(normal, n), friction));
 }
 
 static int collide(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    const int found = collide_once(s, p, m);
-    if (m->b->shape != SPRING_CUSTOM)
-        return found;
-    walk(s, p, m);
-    return CONTACT;
+    const vector3 x = add(p->x0, p->d);
+    vector3 w;
+    put(&w, p->w);
+    int found = collide_once(s, p, m);
+    if (m->b->shape == SPRING_CUSTOM) {
+        walk(s, p, m);
+        found = CONTACT;
+    }
+    const vector3 x1 = add(p->x0, p->d);
+    spring_contact_record(s, p, m->index, &x, &w, &x1, &p->w);
+    return found;
 }
 
 /* ------------------------------------------------------------------------------------------------- several colliders */
@@ -1119,9 +1121,9 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
     for (unsigned i = 0; i < count; i++) {
         if (!(c[i].multiplier > 0))
             continue;
-        const vector3 change = scale(sign * c[i].multiplier, c[i].n);
-        *v = add(*v, change);
-        record(s, p, c[i].index, x, change);
+        const vector3 before = *v;
+        *v = add_scaled(before, sign * c[i].multiplier, c[i].n);
+        spring_contact_record(s, p, c[i].index, &x, &before, &x, v);
     }
     for (unsigned i = 0; i < count; i++) {
         if (!(c[i].multiplier > 0))
@@ -1134,8 +1136,9 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
             if (k != i && c[k].multiplier > 0 && square > 0)
                 friction = scale(inner(friction, line) / square, line);
         }
-        *v = subtract(*v, friction);
-        record(s, p, c[i].index, x, scale(-1, friction));
+        const vector3 before = *v;
+        *v = subtract(before, friction);
+        spring_contact_record(s, p, c[i].index, &x, &before, &x, v);
     }
 }
 
@@ -1156,7 +1159,7 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
         *v = c->velocity;
     else
         *v = subtract(add_scaled(*v, -rate, c->n), scale(limit / spring_sqrt(square), along));
-    record(s, p, c->index, x, subtract(*v, before));
+    spring_contact_record(s, p, c->index, &x, &before, &x, v);
 }
 
 void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
@@ -1216,6 +1219,10 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
         if (!any_inside)
             break;
         p->d = add(p->d, least_change(c, count));
+        for (unsigned i = 0; i < count; i++) {
+            const vector3 x1 = add_scaled(x, c[i].multiplier, c[i].n);
+            spring_contact_record(s, p, c[i].index, &x, &p->w, &x1, &p->w);
+        }
         nearby |= near_path(s, p);
     }
     if (inside == 0)
@@ -1270,7 +1277,7 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
         const double slop = same_place * slop_of(&s, p, &body[k]);
         const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, slop, c, 0);
         for (unsigned i = 0; i < found; i++)
-            surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction};
+            surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction, k};
     }
     return count;
 }

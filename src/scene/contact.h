@@ -66,6 +66,7 @@ typedef struct contact_particle {
     vector3 accel;       /* [m/s^2] of the kick before the drift */
     vector3 w;           /* [m/s] velocity of the drift */
     vector3 d;           /* [m] displacement */
+    vector3 kick;        /* [m/s] velocity at the end minus w, if the drift is that of a whole step */
     double radius, mass; /* [m], [kg] */
     double friction;     /* factor of the friction of colliders */
     uint32_t bits;       /* its mask */
@@ -79,6 +80,7 @@ typedef struct contact_surface {
     vector3 normal;   /* out of the collider */
     vector3 velocity; /* [m/s] */
     double friction;  /* with this particle */
+    unsigned index;   /* of the collider */
 } contact_surface;
 
 /* The name of the first field of a collider that is not valid; NULL: none. number: see definition.h. radius: [m] of
@@ -102,6 +104,11 @@ SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_part
 /* Removes from v the components into the colliders that are touched, with friction: the last kick, at x. */
 SPRING_INTERNAL void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end,
                                          vector3 x, vector3 *v);
+
+/* Adds what collider i is given by a change of the velocity of a particle from w to w1, and of the place where it is
+   afterwards from x to x1. */
+SPRING_INTERNAL void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i,
+                                           const vector3 *x, const vector3 *w, const vector3 *x1, const vector3 *w1);
 
 enum { most_surfaces = 16 }; /* that a particle touches; further ones are ignored */
 

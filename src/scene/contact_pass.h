@@ -110,7 +110,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     scalar accel[3];
     const size_t stride = p->stride;
     const uint32_t axes = p->axes;
-    vector3 v0 = vector_from(q->v0), second_kick = {0, 0, 0};
+    vector3 v0 = vector_from(q->v0);
     bool fine = true;
     if (m->contacts == KICK_DRIFT_CONTACTS) {
         if (m->ends_previous) {
@@ -135,7 +135,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
         q->c.d = vector_minus(load_vector(m->x + i, stride, axes), q->c.x0);
         q->c.w = vector_times(1 / h, q->c.d);
         q->c.accel = vector_times(1 / h, vector_minus(v1, v0));
-        second_kick = vector_minus(v1, q->c.w);
+        q->c.kick = vector_minus(v1, q->c.w);
     }
     q->c.v0 = v0;
     if (!finite_vector(q->c.d) || !finite_vector(q->c.x0)) /* a function of a custom body sees finite numbers only */
@@ -147,7 +147,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     const vector3 x = vector_plus(q->c.x0, 1, q->c.d);
     vector3 v = q->c.w;
     if (m->contacts == WHOLE_STEP_CONTACTS) {
-        v = vector_plus(v, 1, second_kick);
+        v = vector_plus(v, 1, q->c.kick);
         spring_contact_stop(&t->setting, &q->c, q->c.touched, true, x, &v);
     }
     store_vector(m->x + i, stride, axes, x);
@@ -200,6 +200,13 @@ static void filter_candidates(const spring_scene *s, const scene_contacts *t, re
     }
 }
 
+static inline void add_moment(double sum[3], vector3 arm, vector3 j) /* arm x j */
+{
+    sum[0] += arm.y * j.z - arm.z * j.y;
+    sum[1] += arm.z * j.x - arm.x * j.z;
+    sum[2] += arm.x * j.y - arm.y * j.x;
+}
+
 static void add_impulse(spring_impulse *sum, const spring_impulse *more)
 {
     for (int a = 0; a < 3; a++) {
@@ -208,11 +215,14 @@ static void add_impulse(spring_impulse *sum, const spring_impulse *more)
     }
 }
 
-/* Adds the impulses of changes of velocity at x, where `which` is not 0. */
+/* Adds the impulses of changes of velocity at x, where `which` is not 0. They also displace particles to x1, with the
+   velocity v1; NULL: they do not. */
 static void add_impulses(const spring_scene *s, const scene_contacts *t, const resting_chunk *r, const uint32_t *which,
-                         const scalar *x, size_t stride)
+                         const scalar *x, size_t stride, const scalar *x1, const scalar *v1)
 {
     const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
+    const size_t end_stride = r->particles->stride;
+    const uint32_t axes = r->particles->axes;
     spring_impulse sum = {{0}, {0}};
     unsigned c = 0; /* of the sum */
     for (size_t k = 0; k < r->count; k++) {
@@ -226,15 +236,16 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
         }
         const double *const origin = t->setting.origin[c];
         const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
-        const vector3 at = load_vector(x + k, stride, r->particles->axes);
+        const vector3 at = load_vector(x + k, stride, axes);
         const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
         const vector3 j = vector_times(-mass, load_vector(r->change + k, contact_chunk, 3));
         sum.linear[0] += j.x;
         sum.linear[1] += j.y;
         sum.linear[2] += j.z;
-        sum.angular[0] += arm.y * j.z - arm.z * j.y;
-        sum.angular[1] += arm.z * j.x - arm.x * j.z;
-        sum.angular[2] += arm.x * j.y - arm.y * j.x;
+        add_moment(sum.angular, arm, j);
+        if (x1 != NULL)
+            add_moment(sum.angular, vector_minus(load_vector(x1 + k, end_stride, axes), at),
+                       vector_times(-mass, load_vector(v1 + k, end_stride, axes)));
     }
     add_impulse(&t->setting.impulse[c], &sum);
 }
@@ -272,7 +283,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
         memcpy(r.candidate, touched, count * sizeof *touched);
         filter_candidates(s, t, &r);
         kernels->stop_resting(&r);
-        add_impulses(s, t, &r, r.done, r.place, p->stride);
+        add_impulses(s, t, &r, r.done, r.place, p->stride, NULL, NULL);
     }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
@@ -313,7 +324,7 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
         kernels->move_resting(&r);
-        add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk);
+        add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk, m->x + from, m->v + from);
     }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {

@@ -149,7 +149,8 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
             if (pressed)
                 add_normal(p, axes, normal);
             else
-                *p = (pressed_particle){.particle = (uint32_t)i, .line = {normal[0], normal[1], normal[2]}};
+                *p = (pressed_particle){
+                    .particle = (uint32_t)i, .line = {normal[0], normal[1], normal[2]}, .collider = surface[k].index};
             for (uint32_t a = 0; a < axes; a++)
                 p->outwards[a] += normal[a];
             if (how == PRESSED_AND_HELD)
@@ -164,6 +165,7 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
         free_component(p, axes, free);
         for (uint32_t a = 0; a < axes; a++) {
             p->load[a] = residual[a * stride + i] - free[a];
+            p->lost[a] = p->load[a];
             residual[a * stride + i] = free[a];
         }
         found.count++;
@@ -171,19 +173,34 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
     return found;
 }
 
-/* Removes the components of b - from in which pressed particles are not free. from: NULL: 0 */
+/* Removes the components of b - from in which pressed particles are not free. from: NULL: 0, and b is a term of the
+   series. What is removed from a term changes the last one by the same amount, besides damping forces: without them,
+   Clenshaw's recurrence 2 b_{k+1} - b_{k+2} continues a constant. */
 static inline void project_pressed(const scene_step *s, const pressed_list *pressed, const scalar *from, scalar *b)
 {
     const size_t stride = s->scene->layout.stride;
     for (size_t j = 0; j < pressed->count; j++) {
-        const pressed_particle *const p = &pressed->list[j];
+        pressed_particle *const p = &pressed->list[j];
         scalar vector[3];
         for (uint32_t a = 0; a < s->particles.axes; a++)
             vector[a] = b[a * stride + p->particle] - (from != NULL ? from[a * stride + p->particle] : 0);
         free_component(p, s->particles.axes, vector);
-        for (uint32_t a = 0; a < s->particles.axes; a++)
-            b[a * stride + p->particle] = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
+        for (uint32_t a = 0; a < s->particles.axes; a++) {
+            scalar *const at = &b[a * stride + p->particle];
+            const scalar end = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
+            p->lost[a] = (from != NULL ? s->h * p->lost[a] : p->lost[a]) + (*at - end);
+            *at = end;
+        }
     }
+}
+
+/* Adds what collider k is given if the velocity of particle i at x loses `lost`. */
+static inline void record_change(const scene_step *s, size_t i, unsigned k, const scalar *x, vector3 lost)
+{
+    contact_particle particle;
+    const vector3 at = load_vector(x + i, s->particles.stride, s->particles.axes), zero = {0, 0, 0};
+    scene_contact_particle(s->scene, i, &particle);
+    spring_contact_record(&s->contacts.setting, &particle, k, &at, &lost, &at, &zero);
 }
 
 /* Accelerates pressed particles into their colliders by their loads, until their contacts are computed, so that these
@@ -201,7 +218,7 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
     links.terms = DAMPING_TERM;
     evaluate_links(s->kernels, &links, x, change, &s->forces);
     for (size_t j = 0; j < pressed->count; j++) {
-        const pressed_particle *const one = &pressed->list[j];
+        pressed_particle *const one = &pressed->list[j];
         const double inverse_mass = inverse_mass_at(s->scene, one->particle),
                      q = (double)(s->h * p->drag) * inverse_mass;
         const scalar weight = (scalar)(inverse_mass / (1 + q * (0.5 + q / (12 + 2 * q))));
@@ -214,8 +231,12 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
             along += one->outwards[a] * (one->load[a] + (accel[a] - free[a]));
             square += one->outwards[a] * one->outwards[a];
         }
-        for (uint32_t a = 0; a < axes && along < 0; a++)
-            v1[a * p->stride + one->particle] += s->h * (along / square) * one->outwards[a];
+        for (uint32_t a = 0; a < axes && along < 0; a++) {
+            scalar *const v = &v1[a * p->stride + one->particle], before = *v;
+            *v += s->h * (along / square) * one->outwards[a];
+            one->lost[a] += before - *v;
+        }
+        record_change(s, one->particle, one->collider, x, vector_from(one->lost));
     }
 }
 
@@ -237,8 +258,11 @@ static inline void damp_bounces(const scene_step *s)
                 const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
                               u = vector_minus(v, surface[j].velocity);
                 const double leaving = u.x * n.x + u.y * n.y + u.z * n.z;
-                if (leaving > 0)
-                    store_vector(s->whole.v + i, stride, axes, vector_plus(v, -(1 - (double)left[i]) * leaving, n));
+                const double lost = (1 - (double)left[i]) * leaving;
+                if (!(leaving > 0))
+                    continue;
+                store_vector(s->whole.v + i, stride, axes, vector_plus(v, -lost, n));
+                record_change(s, i, k, s->whole.x, vector_times(lost, n));
             }
         }
     }
