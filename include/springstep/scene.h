@@ -142,9 +142,9 @@ typedef void spring_scene_force_fn(void *user, double t, size_t particles, const
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
 
-/** Enables spring_scene_set_link(), spring_scene_set_links(), spring_scene_tear(), spring_scene_set_pinned() and
-   spring_scene_set_mass(). The scene then stores the coefficients of every link and the mass of every particle, even if
-   they are all equal. */
+/** Enables spring_scene_set_link(), spring_scene_set_links(), spring_scene_set_weighted_links(), spring_scene_tear(),
+   spring_scene_set_pinned() and spring_scene_set_mass(). The scene then stores the coefficients of every link and the
+   mass of every particle, even if they are all equal. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
 /** Saves the memory of a second copy of the state. If spring_scene_advance() then fails in a step, the state is lost:
@@ -199,7 +199,8 @@ typedef struct spring_collider {
     double at[3];           /**< [m] plane: a point on it; sphere, box: the centre; capsule: one end of the segment */
     double to[3];           /**< [m] capsule: the other end of the segment */
     double axis[3][3];      /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes.
-                                An error of up to 1e-3, as of rotations in single precision, is removed */
+                                Errors of up to 1e-3 in their dot products, as of rotations in single precision, are
+                                removed */
     double half[3];         /**< [m] >= 0; box: half of its size along each of its axes, without the radius */
     double radius;          /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
     double velocity[3];     /**< [m/s] velocity of `at` */
@@ -318,17 +319,18 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * is the acceleration by the forces of the first half kick and by the implicit drag at v*. Leapfrog is still second
  * order. Held forces act like gravity, in every kick and stage.
  *
- * Leapfrog with heavy link damping. Explicit link damping is used for dt G <= 0.4 and dt D <= 0.9 (1 - dt^2 L/4), with L
- * as in spring_scene_stable_step(). G is the same sum of the damping of links, and D = G plus the largest drag/mass. For
- * a larger dt, a step is a drift for dt/2, one kick, and a drift for dt/2. The kick is v1 = v0 + dt p(dt Z) r, where r
- * is the acceleration at the positions after the first drift and at v0, Z is the damping matrix of the links in their
- * directions there, divided by the masses, and p(z) approximates (1 - e^-z)/z by a Chebyshev series. A correction for
- * the rotation of links during the step is included. Leapfrog is therefore stable for dt < 2/sqrt(L) at any link
- * damping, damping adds no energy, and a link that creeps does so at the rate stiffness/damping. The step has order 2
- * for dt G up to about 3. Beyond, the order falls to 1 (tests/scene/test_damping.c). A step evaluates forces once, and
- * damping alone once for dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond. Positions, velocities and time are then the
- * whole state: no force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice,
- * with v0 and with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
+ * Leapfrog with heavy link damping. Explicit link damping is used for dt G <= 0.4 and dt D <= 0.9 (1 - dt^2 L/4), with
+ * L as in spring_scene_stable_step(). G is the same sum of the damping of links, and D = G plus the largest drag/mass.
+ * For a larger dt, a step is a drift for dt/2, one kick, and a drift for dt/2. The kick is v1 = v0 + dt p(dt Z) r,
+ * where r is the acceleration at the positions after the first drift and at v0, Z is the damping matrix of the links
+ * in their directions there, divided by the masses, and p(z) approximates (1 - e^-z)/z by a Chebyshev series. A
+ * correction for the rotation of links during the step is included. Leapfrog is therefore stable for dt < 2/sqrt(L) at
+ * any link damping, and a link that creeps does so at the rate stiffness/damping. The kick adds no energy. Where
+ * damped links turn during the step, the correction may add some energy. The step has order 2 for dt G up to about 3.
+ * Beyond, the order falls to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for
+ * dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no
+ * force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and
+ * with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and at most 279 evaluations of damping are made: the damping of
  * a link is reduced by the larger excess of its ends. Such a link relaxes within about
@@ -411,16 +413,18 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
  *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02, or for soft bodies
- *    and sheets with shear springs with drag/mass of at least 0.1/s; up to 0.5 for ropes with such drag;
+ *    and sheets with shear springs with drag/mass of at least 0.1/s, while no link is longer than twice its rest
+ *    length; up to 0.5 for ropes with such drag;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
  * `spring-work --problem steps` measures what longer steps cost. Use a smaller step if a link rotates faster than it
  * would oscillate. The forces of a callback are not considered; docs/games.md has a bound with them.
  *
- * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
- * structural, shear and bend springs, 1.5 to 1.6 times for such a cloth and 2 times for such a soft body. It is closer
- * to the bound with fewer springs or under tension: the ratio is 1 for a rope and for a height field of structural
- * springs only, and 1.4 for a cloth that is stretched by half. With heavy damping, it may be several times larger,
- * except for leapfrog.
+ * At rest without link damping, the stability limit is larger than the bound. With leapfrog, symplectic Euler and
+ * SRKN6, it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times
+ * for such a cloth and 2 times for such a soft body; with RK4 and RKN8 it is larger. It is closer to the bound with
+ * fewer springs or under tension: the ratio is 1 for a rope and for a height field of structural springs only, and 1.4
+ * for a cloth that is stretched by half. With heavy damping, the limit may be several times larger, except for leapfrog
+ * with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -531,10 +535,10 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * Replaces all colliders of a scene.
  *
  * The colliders are given at their pose at the current time of the scene. They then move with their velocity,
- * acceleration, spin and spin acceleration until they are set again. After an error, the colliders of the last call keep
- * moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that is
- * inside a collider is moved to its surface in the next step, without a change of velocity. Pinned particles pass
- * through colliders.
+ * acceleration, spin and spin acceleration until they are set again. After an error, the colliders of the last call
+ * keep moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that
+ * is inside a collider is moved to its surface in the next step. The move adds no velocity, but a velocity into the
+ * body is then treated as an impact. Pinned particles pass through colliders.
  *
  * To set colliders once per frame of length T, give the present pose, the present velocity V, and the acceleration that
  * leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and spin_acceleration. If V is not
@@ -542,16 +546,17 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * for bodies that nothing rests on: static friction breaks where the velocity jumps from frame to frame.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
- * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed, in
- * the frame of the body. A bounce therefore has order 2, and no particle passes through a single collider at any speed.
- * A body that turns by more than about 0.2 rad in a step may cut the path of a fast particle, and a particle may pass
+ * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed,
+ * in the frame of the body. A bounce therefore has order 2, and no particle passes through a single collider at any
+ * speed (in single precision, if the collider is thicker than 1e-3 of its size and of its distance from the origin). A
+ * body that turns by more than about 0.2 rad in a step may cut the path of a fast particle, and a particle may pass
  * around an edge within a step. A capsule whose ends have different velocities turns, too. A particle that static
  * friction can hold is carried along with the motion of the body, at any time step. On the spinning surface of a sphere
  * or a capsule it is held to second order. If an impact moves the particle less than 8 eps (|x| + |at| + size) into the
  * collider in a step, this is treated as a rounding error, and the particle does not bounce.
  *
- * A particle that touches several colliders is kept out of all of them, also in a groove of 0.5 degrees. In a wide groove
- * without friction, it may swing by a fraction of the distance that it falls in a step. A custom body that is concave
+ * A particle that touches several colliders is kept out of all of them, also in a groove of 0.5 degrees. In a groove of
+ * 90 to 165 degrees without friction, it may go on swinging with a speed of up to 2 g dt. A custom body that is concave
  * counts as several bodies only where it returns several contacts. Links do not collide, so a thin collider can pass
  * between two particles. A step with negative dt does not undo a step.
  *
@@ -677,8 +682,8 @@ SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t
  * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
  * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
  *
- * If no banded link tears, the lengths of banded links are compared with SIMD, which costs much less than a step; for
- * bands see spring_links_renumber().
+ * If no banded link tears, the lengths of banded links are compared with SIMD. This takes about a third of the time of
+ * a step of cloth; for bands see spring_links_renumber().
  *
  * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
  *                      NULL
@@ -1025,8 +1030,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  *
  * A band is a set of links with a constant index offset between their ends. A scene evaluates bands faster than
  * unbanded links. The particles of a rope are put in order, and the particles of a sheet in rows, so that their links
- * form bands. In a sheet, this requires that the links along its rows are at least a fifth shorter than all other
- * links, or that there are no other links. Other meshes get a small bandwidth.
+ * form bands. In a sheet, this requires that the links along its rows and columns are at most a quarter longer than the
+ * shortest link, and that all other links are longer. Other meshes get a small bandwidth.
  *
  * Permute other arrays yourself: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
  *
@@ -1061,10 +1066,10 @@ SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, s
 SPRING_API size_t spring_links_components(size_t particles, size_t links, const spring_link *link, uint32_t *component);
 
 /**
- * Makes tethers: a tension-only link (SPRING_LINK_TETHER) from each particle to the pinned particle that it hangs on, as
- * long as the way to it along links. Tethers keep ropes and cloth from stretching at time steps for which their links
- * are soft. A rope of 40 links that hangs at rest and takes 4 steps per frame of 1/60 s is 0.2 % too long with tethers
- * of fraction 0.05, and 27 % without.
+ * Makes tethers: a tension-only link (SPRING_LINK_TETHER) from each particle to the pinned particle that it hangs on,
+ * as long as the way to it along links. Tethers keep ropes and cloth from stretching at time steps for which their
+ * links are soft. A rope of 40 links of 0.05 m that hangs at rest and takes 4 steps per frame of 1/60 s, at half of
+ * the stable step, is 0.2 % too long with tethers of fraction 0.05, and 28 % without.
  *
  * There is one tether for each free particle that links connect with a pinned particle and that no link with stiffness
  * joins to a pinned particle directly. Links without stiffness, tethers of the definition and weighted links do not

@@ -63,7 +63,7 @@ typedef enum spring_method {
     SPRING_RK4,      /**< order 4; small error in short runs; an undamped spring slowly loses energy */
     SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error of smooth motion; common in game engines; leapfrog
-                                  costs the same */
+                                  needs as many force evaluations, except with callbacks that use velocities */
     SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
     SPRING_SRKN6 /**< order 6, bounded energy error of smooth motion; scenes without damped links; long runs, 3 to 6
                     significant digits */
@@ -281,8 +281,8 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
  * exact solution.
  *
  * @return limit [s], accurate to 8 ulp. 0: never stable (Euler without damping). INFINITY: always stable (the exact
- *         solution; a spring without stiffness and damping; leapfrog without stiffness). NaN for invalid parameters, an
- *         unknown method and a method that is not offered for one spring.
+ *         solution; a spring without stiffness and damping; leapfrog and symplectic Euler without stiffness). NaN for
+ *         invalid parameters, an unknown method and a method that is not offered for one spring.
  * @par Source    the header of each method, such as src/methods/rk4_tmpl.h, derives its limit
  */
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
@@ -304,7 +304,7 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  * @return time step [s]. 0: there is none, because the rounding error of n steps, sqrt(n) eps, exceeds the tolerance,
  *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered
  *         for one spring.
- * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and rarely below 0.9 times
+ * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and above 0.9 times for 100 steps or more
  *                (tests/spring/test_accurate_step.c)
  * @par Source    src/spring/accuracy.c derives the error
  */

@@ -383,6 +383,7 @@ def test_what_does_not_hang(options, status, words):
 @pytest.mark.parametrize('options, fraction, words', [
     ('--error 0.1 --duration 1 --scene cloth', 0.9, 'a sheet or a block with drag'),
     ('--error 0.1 --duration 1 --scene rope', 0.5, 'a rope with drag'),
+    ('--error 0.1 --duration 1 --scene rope --tethers 0.05', 0.5, 'a rope with drag'),
     ('--error 0.1 --duration 1 --scene rope --drag 0', 0.5, 'smooth motion without damping'),
     ('--error 0.3 --duration 61 --scene chain --size 3 --damping 0', 0.25, 'a long run without damping'),
     ('--error 0.1 --duration 1 --scene rope --drag 0 --damping 3', 0.9, 'damped links'),
@@ -397,8 +398,12 @@ def test_the_rule_for_steps(options, fraction, words):
     for what, allowed, step, steps, single, single_steps in found:
         assert what.startswith(words) and float(allowed) == fraction and step == single
         assert int(steps) == int(single_steps) == math.ceil(1 / 60 / float(step) - 1e-3)
+    first = parse(printed)[0]
     if '--sag' in options:
-        assert float(found[0][2]) == pytest.approx(fraction * float(parse(printed)[0]['stable_step_s']), rel=1e-3)
+        assert float(found[0][2]) == pytest.approx(fraction * float(first['stable_step_s']), rel=1e-3)
+    elif first['method'] == 'leapfrog':
+        beyond = float(first['dt_s']) > float(found[0][2]) / fraction
+        assert ('\n# limit: the step of the plan is longer than the stable step' in printed) == beyond
 
 
 def test_a_part_that_falls(tmp_path):

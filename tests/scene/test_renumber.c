@@ -110,6 +110,15 @@ static void odd_lengths(model *m)
         m->link[i].rest = length[i % 5];
 }
 
+/* Rows and columns whose lengths differ by less than a quarter. */
+static void oblong(model *m)
+{
+    sheet(m, 20, 20, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR, false);
+    for (size_t i = 0; i < m->links; i++)
+        if (m->link[i].b - m->link[i].a == 20)
+            m->link[i].rest *= 1.24;
+}
+
 /* Bounds: what numbering by rows gives, whichever way the rows run; where the lengths of links do not tell the rows,
    a link joins particles of the same level or of neighbouring ones, and a level is at most two diagonals. */
 typedef struct row {
@@ -139,6 +148,7 @@ static const row rows[] = {
     {NULL, 33, 2, {33, 21, 1}, structural, false},
     {NULL, 31 + 1, 4, {20, 31, 1}, sheared, false},
     {NULL, 2 * 35, 6, {35, 35, 1}, all, false},
+    {oblong, 20 + 1, 4, {0}, 0, 0},
     {NULL, 30, 2, {30, 24, 1}, structural, true},
     {NULL, 4 * 24, 0, {30, 24, 1}, all, true},
     {NULL, 4 * 56, 0, {9, 8, 7}, all, false},

@@ -270,14 +270,18 @@ double plan_fraction(const preset *scene, double duration, const char **what)
     const double lone = 1.5;    /* links per particle of a rope */
     const double minute = 60;   /* [s] */
     const spring_scene_def *d = &scene->def;
-    double heaviest = 0, ratio = INFINITY;
+    double heaviest = 0, ratio = INFINITY, links = 0; /* without tethers, which do not make a sheet of a rope */
     for (size_t i = 0; i < d->particles; i++)
         if (!scene->pinned[i])
             heaviest = fmax(heaviest, d->mass != NULL ? d->mass[i] : d->mass_all > 0 ? d->mass_all : 1);
-    for (size_t i = 0; i < d->links; i++)
-        if (d->link[i].stiffness > 0 && d->link[i].flags == 0)
+    for (size_t i = 0; i < d->links; i++) {
+        if (d->link[i].flags & SPRING_LINK_TETHER)
+            continue;
+        links++;
+        if (d->link[i].stiffness > 0)
             ratio = fmin(ratio, d->link[i].damping / sqrt(2 * d->link[i].stiffness * heaviest));
-    const bool rope = (double)d->links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
+    }
+    const bool rope = links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
     if (what != NULL)
         *what = ratio >= damped     ? "damped links"
                 : drags && !rope    ? "a sheet or a block with drag"

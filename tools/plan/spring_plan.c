@@ -94,8 +94,10 @@ static const cli_program program = {
                "damped links, a step also evaluates damping alone. A comment has the number. time_s includes it.\n"
                "Another comment states the largest fraction of the stable step that leapfrog may take for such a\n"
                "scene, and the steps for 1/60 s, in double and single precision: 0.9 if the damping ratio of links is\n"
-               "at least 0.02, and for sheets and blocks with a drag/mass of at least 0.1/s; otherwise 0.5, and 0.25\n"
-               "for more than a minute without drag.\n"
+               "at least 0.02, and for sheets and blocks with a drag/mass of at least 0.1/s, while no link is longer\n"
+               "than twice its rest length; otherwise 0.5, and 0.25 for more than a minute without drag. A line\n"
+               "\"limit:\" warns if the recommended step is longer than the stable step, because the error is that of\n"
+               "a single run.\n"
                "spring-work --problem steps measures what longer steps cost.\n\n"
                "With --presets: scene, method, error, substeps (per frame; 0: not known), dt_s, measured_error,\n"
                "uncertainty and stable_substeps (the fewest whose step is below the stable step; 0: none).\n\n"
@@ -407,6 +409,20 @@ static void say_rule(cli_table *table, const preset *scene, double stable, doubl
                     ceil(plan_frame / (fraction * stable_float)));
 }
 
+/* Prints a warning if the recommended step is above the stable step: the error is measured in one run. */
+static void say_limit(cli_table *table, const preset *scene)
+{
+    const plan_row *first = first_stepper();
+    if (first == NULL)
+        return;
+    const double stable = start_stable_step(scene, first->method);
+    if (first->dt > stable)
+        cli_comment(table,
+                    "limit: the step of the plan is longer than the stable step of this method, %.4g s; it may be "
+                    "unstable in longer runs.",
+                    stable);
+}
+
 static double stable_step_in_float(const preset *scene)
 {
     spring_scenef *s = start_single(scene);
@@ -437,6 +453,7 @@ static void write_plan(cli_table *table, const preset *scene)
     say(table);
     if (scene != NULL) {
         say_rule(table, scene, start_stable_step(scene, SPRING_LEAPFROG), stable_step_in_float(scene));
+        say_limit(table, scene);
         say_damping(table, scene);
     }
     cli_columns(table, program.columns);
