@@ -137,6 +137,13 @@ void spring_collider_move(spring_collider *c, double t, uint32_t axes)
     store3(c->spin, b.start.spin);
     for (int i = 0; i < (c->shape == SPRING_PLANE ? 1 : 3) && b.turns; i++)
         store3(c->axis[i], b.start.axis[i]);
+    if (c->shape == SPRING_PLANE && b.turns) { /* b.surface is in its frame */
+        double axis[3][3];
+        for (int i = 0; i < 3; i++)
+            store3(axis[i], b.start.axis[i]);
+        for (uint32_t a = 0; a < axes; a++)
+            c->surface[a] = b.surface.x * axis[0][a] + b.surface.y * axis[1][a] + b.surface.z * axis[2][a];
+    }
 }
 
 /* ----------------------------------------------------------------------------------------------------- saved states */

@@ -312,6 +312,7 @@ static void present_colliders(void)
             c.acceleration[a] = a < axes ? random_uniform(-3, 3) : 0;
             c.spin[a] = a < axes || axes == 2 ? c.spin[a] + (axes == 2 && a == 2 ? 2 : 0) : 0;
             c.spin_acceleration[a] = growth * c.spin[a];
+            c.surface[a] = a < axes ? random_uniform(-1, 1) : 0;
         }
         collider_after(&c, axes, h, steps, &now);
         collider_after(&c, axes, h, steps - 1, &before);
@@ -338,8 +339,16 @@ static void present_colliders(void)
                 CHECK_CLOSE(again.axis[i][a], later.axis[i][a], rounding, "the rotation goes on");
             }
         }
-        for (int a = 0; a < 3; a++)
+        double surface_rate[3] = {0};
+        if (c.shape == SPRING_PLANE)
+            turning_rate(&now, now.surface, surface_rate);
+        for (int a = 0; a < 3; a++) {
+            const double slope = (after.surface[a] - before.surface[a]) / (2 * h);
+            CHECK_CLOSE(slope, surface_rate[a], 1.8e-4,
+                        "the surface of a plane turns; sqrt(3) times the error of an axis");
+            CHECK_CLOSE(again.surface[a], later.surface[a], rounding, "the surface goes on");
             CHECK_CLOSE(again.spin[a], later.spin[a], rounding, "the spin goes on");
+        }
     }
     const double far[3] = {1e3, 1e3, 1e3};
     const spring_scene_def def = {.particles = 1, .position = far, .colliders = 3};
