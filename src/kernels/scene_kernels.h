@@ -73,6 +73,12 @@ typedef struct stored_weighted {
     scalar root, direction_scale, turning; /* as in scene_band */
 } stored_weighted;
 
+/* Whether a weighted link has a force and no band computes it. */
+static inline bool weighted_acts(const stored_weighted *l)
+{
+    return !l->banded && l->points >= 2 && (l->stiffness > 0 || l->damping > 0);
+}
+
 typedef struct scene_links {
     size_t particles;
     uint32_t axes;
@@ -81,14 +87,21 @@ typedef struct scene_links {
     size_t bands, all_bands; /* all: with those of three-point links, which follow */
     const scene_band *band;
     unbanded_links unbanded;
-    size_t weighted;                       /* 0: all weighted links are in bands */
-    struct stored_weighted *weighted_link; /* [weighted] */
-    bool tension_only;                     /* on two or three axes, some links pull and never push */
-    bool isotropic; /* on two or three axes, a link of rest length 0 is damped: in all directions */
+    size_t weighted;                /* 0: all weighted links are in bands */
+    stored_weighted *weighted_link; /* [weighted] */
+    bool directed;                  /* one of these has a direction: a rest length on two or three axes */
+    bool tension_only;              /* on two or three axes, some links pull and never push */
+    bool isotropic;                 /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
     scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
     scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */
 } scene_links;
+
+/* The damping of a weighted link, for terms with damping. In an exponential kick it may be saturated. */
+static inline scalar weighted_damping(const scene_links *s, const stored_weighted *l)
+{
+    return s->terms == STIFFNESS_AND_DAMPING_TERM ? l->damping : l->root * l->root;
+}
 
 /* Outputs of the kernels of links. */
 typedef struct scene_forces {
@@ -99,7 +112,8 @@ typedef struct scene_forces {
 
 /* Compute forces from positions, and from velocities if `terms` has damping. A band_kernel computes the forces of all
    bands on particles from ... to - 1, both multiples of tile or the end; v may be the array of forces. An
-   unbanded_kernel computes the forces of all unbanded links. */
+   unbanded_kernel computes the forces of all unbanded links. With records, those of weighted links are added, too, unless
+   one is directed. */
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 

@@ -229,6 +229,39 @@ SPRING_INLINE void quad_damping(const scene_links *s, const scalar *x, const sca
     }
 }
 
+/* Weighted links of rest length 0, with quads: the operations of add_linear_link() in scene/weighted.c. */
+SPRING_INLINE void quad_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force, size_t stride,
+                                 bool damped)
+{
+    for (size_t j = 0; j < s->weighted; j++) {
+        const stored_weighted *const l = &s->weighted_link[j];
+        if (!weighted_acts(l))
+            continue;
+        const size_t first = stride * l->particle[0];
+        const quad x_first = quad_load(x + first), v_first = damped ? quad_load(v + first) : quad_all(0);
+        quad vector = quad_all(0), rate = vector, sum = vector;
+        for (int i = 1; i < l->points; i++) {
+            const size_t at = stride * l->particle[i];
+            const quad w = quad_all(l->weight[i]), part = quad_times(w, quad_minus(quad_load(x + at), x_first));
+            vector = i > 1 ? quad_plus(vector, part) : part;
+            if (damped) {
+                const quad change = quad_times(w, quad_minus(quad_load(v + at), v_first));
+                rate = i > 1 ? quad_plus(rate, change) : change;
+            }
+        }
+        quad pull = quad_times(quad_all(s->terms == DAMPING_TERM ? 0 : l->stiffness), vector);
+        if (damped)
+            pull = quad_plus(pull, quad_times(quad_all(weighted_damping(s, l)), rate));
+        for (int i = 1; i < l->points; i++) {
+            scalar *const to = force + stride * l->particle[i];
+            const quad part = quad_times(quad_all(l->weight[i]), pull);
+            quad_store(to, quad_minus(quad_load(to), part));
+            sum = i > 1 ? quad_plus(sum, part) : part;
+        }
+        quad_store(force + first, quad_plus(quad_load(force + first), sum));
+    }
+}
+
 /* A record has the position, the velocity (if links are damped) and the force of a particle side by side, for scenes
    with many unbanded links. */
 SPRING_INLINE size_t force_in_record(bool damped)
@@ -276,6 +309,8 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         quad_damping(s, records, records + quad_size, records + at_force, stride);
     else
         quad_links(s, records, records + quad_size, records + at_force, stride, damped);
+    if (!s->directed)
+        quad_weighted(s, records, records + quad_size, records + at_force, stride, damped);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else

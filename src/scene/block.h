@@ -52,6 +52,7 @@ struct spring_scene {
     uint64_t steps;
     uint64_t damped_links, isotropic_links; /* isotropic: on two or three axes, damped and of rest length 0 */
     size_t loose;                           /* weighted links that are in no band now */
+    size_t directed;                        /* weighted links with a rest length, on two or three axes */
     uint64_t ends;                          /* a number for the ends of the links, see layout.c */
     uint32_t buffer;                        /* 0 or 1: holds the state */
     cached_force force_cache;

@@ -135,8 +135,7 @@ static void fill_weighted_links(spring_scene *s, const spring_scene_def *def)
         all[i].points = spring_weighted_points(link, all[i].particle, all[i].place);
         all[i].slot = spring_layout_weighted_slot(&s->layout, link, next);
         scene_write_weighted(s, &all[i], link);
-        s->damped_links += all[i].damping > 0;
-        s->loose += !all[i].banded;
+        scene_count_weighted(s, &all[i], true);
     }
 }
 

@@ -193,6 +193,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             },
         .weighted = s->loose > 0 ? l->weighted : 0,
         .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
+        .directed = s->directed > 0,
         .tension_only = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
         .isotropic = s->isotropic_links > 0,
     };
@@ -221,12 +222,12 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
                                   const scalar *v, scene_forces *out)
 {
     const common_kernels *const common = kernels->common;
+    const bool records = out->records != NULL && links->terms != FREEZING_TERMS;
     if (links->all_bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
     if (links->all_bands == 0 || links->unbanded.count > 0)
-        (out->records != NULL && links->terms != FREEZING_TERMS ? common->record_forces
-                                                                : common->unbanded_forces)(links, x, v, out);
-    if (links->weighted > 0)
+        (records ? common->record_forces : common->unbanded_forces)(links, x, v, out);
+    if (links->weighted > 0 && (!records || links->directed))
         spring_scene_add_weighted(links, x, v, out->force);
 }
 

@@ -383,17 +383,16 @@ static void settle_links(spring_scene *s, bool damped)
     const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
-    s->damped_links = s->isotropic_links = s->loose = 0;
+    s->damped_links = s->isotropic_links = 0;
+    s->loose = s->directed = 0;
     settle_damping(s, ARRAY_BAND_DAMPING, ARRAY_BAND_REST, slots, damped);
     settle_damping(s, ARRAY_LINK_DAMPING, ARRAY_LINK_REST, l->unbanded, damped);
     for (size_t i = 0; i < l->tethers && !damped; i++)
         tethers[i].damping = 0;
     for (size_t i = 0; i < slots; i++)
         occupied[i] = stiffness[i] + damping[i] > 0 ? -1 : 0;
-    for (size_t i = 0; i < l->weighted; i++) {
-        s->damped_links += weighted[i].damping > 0;
-        s->loose += !weighted[i].banded;
-    }
+    for (size_t i = 0; i < l->weighted; i++)
+        scene_count_weighted(s, &weighted[i], true);
     s->bounds_known = false;
 }
 

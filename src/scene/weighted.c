@@ -74,7 +74,7 @@ SPRING_INLINE void add_linear_link(const scene_links *s, const stored_weighted *
                                    scalar *force, int points)
 {
     const scalar rest = s->axes == 1 ? l->rest : 0, stiffness = s->terms == DAMPING_TERM ? 0 : l->stiffness;
-    const scalar damping = s->terms == STIFFNESS_AND_DAMPING_TERM ? l->damping : l->root * l->root;
+    const scalar damping = weighted_damping(s, l);
     SPRING_ROLLED
     for (uint32_t a = 0; a < s->axes; a++) {
         scalar pull = stiffness * (weighted_sum(l, x + a * s->stride, points) - rest);
@@ -102,7 +102,7 @@ void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scal
     const scene_links own = *s; /* a local copy, so that stores cannot alias its fields */
     for (size_t j = 0; j < own.weighted; j++) {
         stored_weighted *const l = &own.weighted_link[j];
-        if (l->banded || l->points < 2 || !(l->stiffness > 0 || l->damping > 0))
+        if (!weighted_acts(l))
             continue;
         if (own.axes > 1 && l->rest > 0)
             add_directed_link(&own, l, x, v, force);
@@ -159,11 +159,9 @@ spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, siz
             return SPRING_EINVAL;
     for (size_t i = 0; i < count; i++) {
         stored_weighted *const to = &all[first + i];
-        s->damped_links -= to->damping > 0;
-        s->loose -= !to->banded;
+        scene_count_weighted(s, to, false);
         scene_write_weighted(s, to, &link[i]);
-        s->damped_links += to->damping > 0;
-        s->loose += !to->banded;
+        scene_count_weighted(s, to, true);
     }
     s->bounds_known = false;
     scene_drop_forces(s);

@@ -33,6 +33,15 @@ static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, co
         scene_fill_slot(s, to, scene_slot_place(s, to->slot).index);
 }
 
+/* Counts a weighted link. */
+static inline void scene_count_weighted(spring_scene *s, const stored_weighted *l, bool added)
+{
+    const uint64_t one = added ? 1 : (uint64_t)-1;
+    s->damped_links += l->damping > 0 ? one : 0;
+    s->loose += l->banded ? 0 : (size_t)one;
+    s->directed += l->rest > 0 && s->layout.axes > 1 ? (size_t)one : 0;
+}
+
 /* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the
    others, which add_weighted_link() uses in its place, so that the sum of the weights is 0. */
 static inline spring_weighted_link scene_weighted(const stored_weighted *l)
