@@ -206,7 +206,7 @@ static void list_arrays(const spring_scene_def *def, const element_sizes *size, 
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
     const bool predicts = needs.predicts && velocity_used, kicks = needs.predicts && damped;
-    const bool records = l->axes > 1 && l->unbanded >= l->particles && !has_few_links(def);
+    const bool records = l->axes > 1 && l->unbanded + l->loose >= l->particles && !has_few_links(def);
     const bool collides = l->colliders > 0, flagged = link_flags(def) != 0;
     /* Their velocities are read after the forces of bands have been stored. */
     const bool reads_later = l->weighted > 0 || (l->unbanded > 0 && (l->bands > 0 || !records));

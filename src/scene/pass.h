@@ -223,11 +223,12 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
 {
     const common_kernels *const common = kernels->common;
     const bool records = out->records != NULL && links->terms != FREEZING_TERMS;
+    const bool with_weighted = records && links->weighted > 0 && !links->directed;
     if (links->all_bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
-    if (links->all_bands == 0 || links->unbanded.count > 0)
+    if (links->all_bands == 0 || links->unbanded.count > 0 || with_weighted)
         (records ? common->record_forces : common->unbanded_forces)(links, x, v, out);
-    if (links->weighted > 0 && (!records || links->directed))
+    if (links->weighted > 0 && !with_weighted)
         spring_scene_add_weighted(links, x, v, out->force);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Weighted links that are not in bands: their forces, one after another in their order, and how they are read and set.
+ * quad_weighted() of kernels/unbanded_tmpl.h has the same operations for linear links of scenes with records.
  *
  * Law       F_i = -w_i p,  p = d (k (1 - rest/|d|) + c (d . d')/|d|^2),  d = sum of w_i x_i. For rest length 0 and on one
  *           axis p is linear: k d + c d', or k (d - rest) + c d'. The force on the first particle is minus the sum of
