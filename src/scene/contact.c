@@ -325,6 +325,16 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     bound_with_box(b, reach_of_box * b->reach + way_of_box * b->growth * shift);
 }
 
+/* [m] The size of numbers that its distances are computed from. */
+static double size_at(const contact_body *b, const body_pose *pose)
+{
+    double size =
+        largest_of(pose->at) + b->radius + largest_of(pose->segment) + (b->shape == SPRING_CUSTOM ? b->thickness : 0);
+    for (int a = 0; a < (b->flat ? 2 : 3) && b->shape == SPRING_BOX; a++)
+        size += b->half[a];
+    return size;
+}
+
 void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1, uint32_t axes)
 {
     const bool flat = axes == 2, capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
@@ -372,10 +382,7 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
                     2 * length3(subtract(b->end.axis[1], b->start.axis[1])) +
                     2 * length3(subtract(b->end.axis[2], b->start.axis[2]));
     }
-    b->size = largest_of(b->start.at) + b->radius + largest_of(b->start.segment) +
-              (b->shape == SPRING_CUSTOM ? b->thickness : 0);
-    for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
-        b->size += b->half[a];
+    b->size = size_at(b, &b->start);
     find_bounds(b, angle, c->bound);
 }
 
@@ -502,9 +509,16 @@ static unsigned find_all(contact_particle *p, const contact_body *b, const body_
 }
 
 /* [m] Gaps below this are rounding errors. */
-SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, const contact_body *b)
+SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, double size)
 {
-    return 8 * s->epsilon * (largest_of(p->x0) + b->size + p->radius);
+    return 8 * s->epsilon * (largest_of(p->x0) + size + p->radius);
+}
+
+/* [m] Contacts whose gaps differ by less act together in a stop. It depends on the pose and not on the step, so that the
+   end of a step has the result of the start of the next. */
+static double same_gap(const contact_setting *s, const contact_particle *p, const contact_body *b, bool at_end)
+{
+    return same_place * slop_of(s, p, size_at(b, at_end ? &b->end : &b->start));
 }
 
 /* [m/s] Velocity of a point of the frame at x. */
@@ -751,7 +765,7 @@ static bool find_custom_impact(contact_particle *p, meeting *m)
 static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 {
     const contact_body *const b = m->b;
-    m->slop = slop_of(s, p, b);
+    m->slop = slop_of(s, p, b->size);
     m->start = place_in(&b->start, p->x0);
     m->way = subtract(end_in_frame(b, p), m->start);
     m->fraction = 0;
@@ -1169,7 +1183,7 @@ void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t
     unsigned count = 0;
     for (unsigned i = 0; i < s->count; i++)
         if ((touched >> i & 1) != 0)
-            count = add_constraints(p, &s->body[i], i, at_end, x, same_place * slop_of(s, p, &s->body[i]), c, count);
+            count = add_constraints(p, &s->body[i], i, at_end, x, same_gap(s, p, &s->body[i], at_end), c, count);
     stop(s, p, c, count, x, v);
 }
 
@@ -1182,7 +1196,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
-        const double margin = b->growth * (reach_of_box * p->radius + way_of_box * way) + 4 * slop_of(s, p, b);
+        const double margin = b->growth * (reach_of_box * p->radius + way_of_box * way) + 4 * slop_of(s, p, b->size);
         bool meets = (b->bits & p->bits) != 0;
         for (int a = 0; a < 3 && meets; a++) {
             const double at = component(p->x0, a);
@@ -1209,7 +1223,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
             const unsigned before = count,
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
-                const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
+                const bool deep = c[k].least > slop_of(s, p, s->body[i].size);
                 any_inside = any_inside || deep;
                 inside |= (uint32_t)deep << i;
                 if ((inside >> i & 1) != 0 || ((p->touched >> i & 1) != 0 && -c[k].least < way))
@@ -1274,8 +1288,8 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
             continue;
         constraint c[most_constraints];
         contact_particle particle = *p;
-        const double slop = same_place * slop_of(&s, p, &body[k]);
-        const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, slop, c, 0);
+        const double most = same_gap(&s, p, &body[k], at_end);
+        const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, most, c, 0);
         for (unsigned i = 0; i < found; i++)
             surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction, k};
     }
