@@ -343,9 +343,10 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
- * with three to six significant digits: without drag the energy error of smooth motion stays bounded. At such errors it
- * needs fewer force evaluations than leapfrog, and about as many as RKN8. Drag is solved exactly together with the
- * drift, so the order is still 6.
+ * with three to six significant digits: without drag the energy error of smooth motion stays bounded. One second of
+ * the cloth of `spring-work --problem long-cloth` with an error of 1e-3 at the end takes 925 force evaluations, with RKN8
+ * 801 and with leapfrog 2310. In stiff scenes leapfrog needs fewer. Drag is solved exactly together with the drift, so
+ * the order is still 6.
  *
  * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4,
  * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the

@@ -6,7 +6,8 @@
 
 enum { AXES = 3, TILE = 8, MOST_ITERATIONS = 1000 };
 
-/* Local and global solves per step of projective dynamics. Three or ten had two times the error for the same time. */
+/* Local and global solves per step of projective dynamics. Three had 1.3 times the error for the same time in the
+   stiff cloth after 0.25 s. */
 enum { ITERATIONS = 1 };
 
 /* Iterations end at this part of the residual, in the norm of the preconditioner, for steps of a frame, and at less for
