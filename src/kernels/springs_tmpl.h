@@ -94,7 +94,7 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     bool all = true;
     for (size_t i = 0; i < b.count; i += lanes) {
         const spring_rates r = rates_at(&b, i, damped, loaded);
-        step_coefficients c;
+        step_coefficients c = {.omega2 = h}; /* gcc warns of the others, where `damped` is not a constant */
         prepare(&c, r, h, damped, loaded);
         real x = vec_load(b.x + i), v = vec_load(b.v + i), kept = start(x, &c, loaded);
         step(&x, &v, &kept, h, &c, damped, loaded);
