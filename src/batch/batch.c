@@ -89,8 +89,8 @@ static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t si
     return to;
 }
 
-/* Advances the springs that do not fill a group, with the narrowest kernels whose group holds them. Copies of the first
-   fill it up, so that the loop still ends early when no spring is finite any more. */
+/* Advances the springs that do not fill a group, with the narrowest kernels whose group is large enough. Copies of the
+   first spring fill the group, so that the loop still ends early when no spring is finite any more. */
 static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, const batch_run *all, size_t first)
 {
     scalar x[largest_group], v[largest_group];

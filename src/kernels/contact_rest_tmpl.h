@@ -30,44 +30,44 @@ typedef struct resting_lanes {
     lane_mask touching, failed;
 } resting_lanes;
 
-SPRING_REST_INLINE real3 splat_vector(vector3 v)
+SPRING_CONTACT_INLINE real3 splat_vector(vector3 v)
 {
     return (real3){splat((scalar)v.x), splat((scalar)v.y), splat((scalar)v.z)};
 }
 
-SPRING_REST_INLINE real3 zero_lanes(void)
+SPRING_CONTACT_INLINE real3 zero_lanes(void)
 {
     return (real3){splat(0), splat(0), splat(0)};
 }
 
-SPRING_REST_INLINE real length_lanes(real3 a)
+SPRING_CONTACT_INLINE real length_lanes(real3 a)
 {
     return vec_sqrt(dot3(a, a));
 }
 
-SPRING_REST_INLINE real3 tangential_lanes(real3 u, real3 n)
+SPRING_CONTACT_INLINE real3 tangential_lanes(real3 u, real3 n)
 {
     return plus_scaled3(u, -dot3(u, n), n);
 }
 
-SPRING_REST_INLINE real sum_of_sizes(real3 a)
+SPRING_CONTACT_INLINE real sum_of_sizes(real3 a)
 {
     return vec_abs(a.x) + vec_abs(a.y) + vec_abs(a.z);
 }
 
 /* Whether the surface is its own tangent plane throughout the step. */
-SPRING_REST_INLINE bool is_fixed_plane(const contact_body *b)
+SPRING_CONTACT_INLINE bool is_fixed_plane(const contact_body *b)
 {
     return b->shape == SPRING_PLANE && !b->turns;
 }
 
 /* Whether the axes of the frame are those of the scene. */
-SPRING_REST_INLINE bool has_plain_frame(const contact_body *b)
+SPRING_CONTACT_INLINE bool has_plain_frame(const contact_body *b)
 {
     return !b->turns && (b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE);
 }
 
-SPRING_REST_INLINE real3 direction_in_lanes(const contact_body *b, const body_pose *p, real3 a)
+SPRING_CONTACT_INLINE real3 direction_in_lanes(const contact_body *b, const body_pose *p, real3 a)
 {
     if (has_plain_frame(b))
         return a;
@@ -75,7 +75,7 @@ SPRING_REST_INLINE real3 direction_in_lanes(const contact_body *b, const body_po
                    dot3(a, splat_vector(p->axis[2]))};
 }
 
-SPRING_REST_INLINE real3 direction_out_lanes(const contact_body *b, const body_pose *p, real3 y)
+SPRING_CONTACT_INLINE real3 direction_out_lanes(const contact_body *b, const body_pose *p, real3 y)
 {
     if (has_plain_frame(b))
         return y;
@@ -83,18 +83,18 @@ SPRING_REST_INLINE real3 direction_out_lanes(const contact_body *b, const body_p
                         splat_vector(p->axis[2]));
 }
 
-SPRING_REST_INLINE real3 place_in_lanes(const contact_body *b, const body_pose *p, real3 x)
+SPRING_CONTACT_INLINE real3 place_in_lanes(const contact_body *b, const body_pose *p, real3 x)
 {
     return direction_in_lanes(b, p, minus3(x, splat_vector(p->at)));
 }
 
-SPRING_REST_INLINE vector3 vector_between(vector3 a, vector3 b)
+SPRING_CONTACT_INLINE vector3 vector_between(vector3 a, vector3 b)
 {
     return (vector3){a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
 /* The displacement from x0 to x0 + d in the frame. Differences of positions would have their rounding errors. */
-SPRING_REST_INLINE real3 way_in_lanes(const contact_body *b, real3 x0, real3 d)
+SPRING_CONTACT_INLINE real3 way_in_lanes(const contact_body *b, real3 x0, real3 d)
 {
     real3 way = direction_in_lanes(b, &b->end, minus3(d, splat_vector(vector_between(b->end.at, b->start.at))));
     if (!b->turns)
@@ -107,7 +107,7 @@ SPRING_REST_INLINE real3 way_in_lanes(const contact_body *b, real3 x0, real3 d)
 }
 
 /* The displacement of a point of the body, at y in its frame. */
-SPRING_REST_INLINE real3 way_of_body(const contact_body *b, real3 y)
+SPRING_CONTACT_INLINE real3 way_of_body(const contact_body *b, real3 y)
 {
     real3 way = splat_vector(vector_between(b->end.at, b->start.at));
     const real each[3] = {y.x, y.y, y.z};
@@ -116,7 +116,7 @@ SPRING_REST_INLINE real3 way_of_body(const contact_body *b, real3 y)
     return way;
 }
 
-SPRING_REST_INLINE void round_lanes(near_lanes *out, real3 from_core, real radius)
+SPRING_CONTACT_INLINE void round_lanes(near_lanes *out, real3 from_core, real radius)
 {
     const real square = dot3(from_core, from_core), distance = vec_sqrt(square);
     const real3 up = {splat(0), splat(1), splat(0)};
@@ -124,7 +124,7 @@ SPRING_REST_INLINE void round_lanes(near_lanes *out, real3 from_core, real radiu
     out->gap = distance - radius;
 }
 
-SPRING_REST_INLINE void capsule_lanes(near_lanes *out, real3 y, vector3 segment, real radius)
+SPRING_CONTACT_INLINE void capsule_lanes(near_lanes *out, real3 y, vector3 segment, real radius)
 {
     const double square = segment.x * segment.x + segment.y * segment.y + segment.z * segment.z;
     const real3 axis = splat_vector(segment);
@@ -133,7 +133,7 @@ SPRING_REST_INLINE void capsule_lanes(near_lanes *out, real3 y, vector3 segment,
     round_lanes(out, plus_scaled3(y, -out->along, axis), radius);
 }
 
-SPRING_REST_INLINE void box_lanes(near_lanes *out, const contact_body *b, real3 y, real radius)
+SPRING_CONTACT_INLINE void box_lanes(near_lanes *out, const contact_body *b, real3 y, real radius)
 {
     const real half[3] = {splat((scalar)b->half[0]), splat((scalar)b->half[1]), splat((scalar)b->half[2])};
     const real3 gap = {vec_abs(y.x) - half[0], vec_abs(y.y) - half[1], vec_abs(y.z) - half[2]};
@@ -175,7 +175,7 @@ SPRING_NOINLINE void nearest_lanes(const contact_body *b, bool at_end, const rea
 }
 
 /* [m/s] Velocity of a point of the body at x. */
-SPRING_REST_INLINE real3 body_velocity(const contact_body *b, const body_pose *p, real along, real3 x)
+SPRING_CONTACT_INLINE real3 body_velocity(const contact_body *b, const body_pose *p, real along, real3 x)
 {
     const real3 v = splat_vector(p->velocity);
     if (b->shape == SPRING_CAPSULE)
@@ -206,7 +206,7 @@ SPRING_NOINLINE void stop_lanes(const contact_body *b, const body_pose *p, const
 }
 
 /* Steps 1 and 2: lanes in which the contact begins at the start of the step are touching. */
-SPRING_REST_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, real3 *normal, real *gap)
+SPRING_CONTACT_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, real3 *normal, real *gap)
 {
     const contact_body *const b = q->b;
     const scalar epsilon = 8 * SCALAR_EPSILON;
@@ -227,7 +227,7 @@ SPRING_REST_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *star
 
 static const scalar least_cosine_lanes = (scalar)0.1;
 
-SPRING_REST_INLINE real cosine_lanes(real3 n, real3 n_end)
+SPRING_CONTACT_INLINE real cosine_lanes(real3 n, real3 n_end)
 {
     const real cosine = dot3(n, n_end);
     return select_real(cosine > least_cosine_lanes, cosine, splat(least_cosine_lanes));
@@ -364,8 +364,8 @@ typedef struct pressing_lanes {
 } pressing_lanes;
 
 /* Friction changes where the path ends, and so the impulse: two passes, in the lanes with friction. */
-SPRING_REST_INLINE void find_friction(const resting_lanes *q, const near_lanes *at, const near_lanes *there, scalar h,
-                                      pressing_lanes *s)
+SPRING_CONTACT_INLINE void find_friction(const resting_lanes *q, const near_lanes *at, const near_lanes *there,
+                                         scalar h, pressing_lanes *s)
 {
     const contact_body *const b = q->b;
     const real mu = (scalar)b->friction * q->friction;
@@ -396,7 +396,7 @@ SPRING_REST_INLINE void find_friction(const resting_lanes *q, const near_lanes *
 }
 
 /* [m] The displacement of the point of the body that a particle at *y in its frame rests on. */
-SPRING_REST_INLINE real3 ride_of(const contact_body *b, real3 y, real along)
+SPRING_CONTACT_INLINE real3 ride_of(const contact_body *b, real3 y, real along)
 {
     const real3 ride = b->moves ? way_of_body(b, y) : zero_lanes();
     if (b->shape != SPRING_CAPSULE || !b->turns)
@@ -406,7 +406,7 @@ SPRING_REST_INLINE real3 ride_of(const contact_body *b, real3 y, real along)
 }
 
 /* Steps 3 and 4 from the start of the step, in the lanes that touch. */
-SPRING_REST_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 n, real gap, scalar h)
+SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 n, real gap, scalar h)
 {
     const contact_body *const b = q->b;
     const real3 velocity = body_velocity(b, &b->start, at->along, q->x0);
@@ -492,7 +492,7 @@ SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, si
 }
 
 /* A quantity of these particles. from: of the first particle of the chunk; step: between particles, 0 or 1 */
-SPRING_REST_INLINE real pick(const picked_particles *l, const scalar *from, size_t step)
+SPRING_CONTACT_INLINE real pick(const picked_particles *l, const scalar *from, size_t step)
 {
     real picked;
     if (l->consecutive)
@@ -502,7 +502,8 @@ SPRING_REST_INLINE real pick(const picked_particles *l, const scalar *from, size
 }
 
 /* The same on each axis; stride: between axes. */
-SPRING_REST_INLINE real3 pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step, uint32_t axes)
+SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step,
+                                  uint32_t axes)
 {
     if (l->consecutive)
         return load_place(from + step * l->place[0], stride, axes);
@@ -556,7 +557,7 @@ SPRING_NOINLINE void leave_to_others(const resting_chunk *r, unsigned c, const r
 }
 
 /* The step of particles that may touch collider c only: see rest_step. */
-SPRING_REST_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+SPRING_CONTACT_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -634,7 +635,7 @@ SPRING_REST_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_par
     return fine;
 }
 
-SPRING_REST_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+SPRING_CONTACT_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -659,7 +660,7 @@ typedef lane_mask rest_step(resting_chunk *r, const picked_particles *l, unsigne
 
 /* The particles from *k on with collider c as their only candidate: those within the next vector if they fill half of it,
    else any. *k: where to continue */
-SPRING_REST_INLINE void pick_next(const resting_chunk *r, unsigned c, size_t *k, picked_particles *l)
+SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, unsigned c, size_t *k, picked_particles *l)
 {
     const size_t last = (r->count - 1) / lanes * lanes, start = *k < last ? *k : last; /* within the padding */
     size_t count = 0, i = *k;
@@ -685,7 +686,7 @@ SPRING_REST_INLINE void pick_next(const resting_chunk *r, unsigned c, size_t *k,
     *k = i;
 }
 
-SPRING_REST_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
+SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
 {
     uint32_t single = 0;
     for (size_t k = 0; k < r->count; k++)

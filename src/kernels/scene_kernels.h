@@ -73,7 +73,7 @@ typedef struct stored_weighted {
     scalar root, direction_scale, turning; /* as in scene_band */
 } stored_weighted;
 
-/* Whether a weighted link has a force and no band computes it. */
+/* Whether a weighted link has a force that no band computes. */
 static inline bool weighted_acts(const stored_weighted *l)
 {
     return !l->banded && l->points >= 2 && (l->stiffness > 0 || l->damping > 0);
@@ -89,7 +89,7 @@ typedef struct scene_links {
     unbanded_links unbanded;
     size_t weighted;                /* 0: all weighted links are in bands */
     stored_weighted *weighted_link; /* [weighted] */
-    bool directed;                  /* one of these has a direction: a rest length on two or three axes */
+    bool nonlinear;                 /* one of these has a rest length, on two or three axes */
     bool tension_only;              /* on two or three axes, some links pull and never push */
     bool isotropic;                 /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
@@ -112,8 +112,8 @@ typedef struct scene_forces {
 
 /* Compute forces from positions, and from velocities if `terms` has damping. A band_kernel computes the forces of all
    bands on particles from ... to - 1, both multiples of tile or the end; v may be the array of forces. An
-   unbanded_kernel computes the forces of all unbanded links. With records, those of weighted links are added, too, unless
-   one is directed. */
+   unbanded_kernel computes the forces of all unbanded links. With records, it also adds the forces of weighted
+   links, unless one is nonlinear. */
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 

@@ -94,7 +94,7 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     bool all = true;
     for (size_t i = 0; i < b.count; i += lanes) {
         const spring_rates r = rates_at(&b, i, damped, loaded);
-        step_coefficients c = {.omega2 = h}; /* gcc warns of the others, where `damped` is not a constant */
+        step_coefficients c = {.omega2 = splat(0)}; /* gcc warns about fields of features that are off */
         prepare(&c, r, h, damped, loaded);
         real x = vec_load(b.x + i), v = vec_load(b.v + i), kept = start(x, &c, loaded);
         step(&x, &v, &kept, h, &c, damped, loaded);
@@ -103,7 +103,7 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     return all;
 }
 
-/* Only leapfrog has a loop over single steps for each set of features, and none with vectors of 64 bytes. */
+/* Only leapfrog has a loop over single steps for each set of features. With vectors of 64 bytes it has one loop. */
 SPRING_INLINE bool advance_by(const batch_run *b, method_prepare *prepare, method_start *start, method_step *step)
 {
     const bool damped = b->gamma.first != NULL, loaded = b->accel.first != NULL;

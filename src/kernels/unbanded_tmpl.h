@@ -263,7 +263,7 @@ SPRING_INLINE void quad_weighted(const scene_links *s, const scalar *x, const sc
 }
 
 /* A record has the position, the velocity (if links are damped) and the force of a particle side by side, for scenes
-   with many unbanded links. */
+   with many unbanded or weighted links. */
 SPRING_INLINE size_t force_in_record(bool damped)
 {
     return (damped ? 2 : 1) * quad_size;
@@ -309,7 +309,7 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         quad_damping(s, records, records + quad_size, records + at_force, stride);
     else
         quad_links(s, records, records + quad_size, records + at_force, stride, damped);
-    if (!s->directed)
+    if (!s->nonlinear)
         quad_weighted(s, records, records + quad_size, records + at_force, stride, damped);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);

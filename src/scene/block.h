@@ -29,7 +29,7 @@ typedef struct pressed_particle {
     scalar outwards[3]; /* sum of the normals */
     scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
     unsigned collider;  /* the first one that it presses on */
-    scalar lost[3];     /* [m/s] velocity that colliders took from it in the kick; [m/s^2] before its last term */
+    scalar removed[3];  /* [m/s] change of velocity by colliders in the kick; [m/s^2] before its last term */
 } pressed_particle;
 
 /* The forces that a step keeps for the next step, in the force array of the buffer that holds the state. Only steps
@@ -52,7 +52,7 @@ struct spring_scene {
     uint64_t steps;
     uint64_t damped_links, isotropic_links; /* isotropic: on two or three axes, damped and of rest length 0 */
     size_t loose;                           /* weighted links that are in no band now */
-    size_t directed;                        /* weighted links with a rest length, on two or three axes */
+    size_t nonlinear;                       /* weighted links with a rest length, on two or three axes */
     uint64_t ends;                          /* a number for the ends of the links, see layout.c */
     uint32_t buffer;                        /* 0 or 1: holds the state */
     cached_force force_cache;

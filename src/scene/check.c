@@ -8,46 +8,48 @@
 
 /* ------------------------------------------------------------------------------------------------------------ links */
 
-const char *spring_link_invalid_field(const spring_link *link, size_t number)
+const char *spring_link_invalid_field(const spring_link *link, size_t precision)
 {
-    return !value_not_negative(number, link->rest)        ? "link.rest"
-           : !value_not_negative(number, link->stiffness) ? "link.stiffness"
-           : !value_not_negative(number, link->damping)   ? "link.damping"
-                                                          : NULL;
+    return !value_not_negative(precision, link->rest)        ? "link.rest"
+           : !value_not_negative(precision, link->stiffness) ? "link.stiffness"
+           : !value_not_negative(precision, link->damping)   ? "link.damping"
+                                                             : NULL;
 }
 
-const char *spring_link_overflows(const spring_link *link, size_t number, double inverse_a, double inverse_b)
+const char *spring_link_overflows(const spring_link *link, size_t precision, double inverse_a, double inverse_b)
 {
     const double lightest = fmax(inverse_a, inverse_b);
-    return !value_fits(number, 2 * (link->stiffness * lightest)) ? "link.stiffness"
-           : !value_fits(number, 2 * (link->damping * lightest)) ? "link.damping"
-                                                                 : NULL;
+    return !value_fits(precision, 2 * (link->stiffness * lightest)) ? "link.stiffness"
+           : !value_fits(precision, 2 * (link->damping * lightest)) ? "link.damping"
+                                                                    : NULL;
 }
 
-const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t number)
+const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t precision)
 {
     const double tolerance = 1e-12; /* of the sum, relative to the largest weight: rounding errors of decimal numbers */
     double sum = 0, largest = 0;
     for (int i = 0; i < 4; i++) {
-        if (!value_fits(number, link->weight[i]))
+        if (!value_fits(precision, link->weight[i]))
             return "weighted_link.weight";
         sum += link->weight[i];
         largest = fmax(largest, fabs(link->weight[i]));
     }
-    return !(fabs(sum) <= tolerance * largest)            ? "weighted_link.weight"
-           : !value_not_negative(number, link->rest)      ? "weighted_link.rest"
-           : !value_not_negative(number, link->stiffness) ? "weighted_link.stiffness"
-           : !value_not_negative(number, link->damping)   ? "weighted_link.damping"
-                                                          : NULL;
+    return !(fabs(sum) <= tolerance * largest)               ? "weighted_link.weight"
+           : !value_not_negative(precision, link->rest)      ? "weighted_link.rest"
+           : !value_not_negative(precision, link->stiffness) ? "weighted_link.stiffness"
+           : !value_not_negative(precision, link->damping)   ? "weighted_link.damping"
+                                                             : NULL;
 }
 
-const char *spring_weighted_overflows(const spring_weighted_link *link, size_t number, const double inverse_mass[4])
+const char *spring_weighted_overflows(const spring_weighted_link *link, size_t precision, const double inverse_mass[4])
 {
     for (int i = 0; i < 4; i++) {
         const double row = weighted_row(link->weight, inverse_mass, i);
-        if (!value_fits(number, link->stiffness * row) || !value_fits(number, link->stiffness * row * inverse_mass[i]))
+        if (!value_fits(precision, link->stiffness * row) ||
+            !value_fits(precision, link->stiffness * row * inverse_mass[i]))
             return "weighted_link.stiffness";
-        if (!value_fits(number, link->damping * row) || !value_fits(number, link->damping * row * inverse_mass[i]))
+        if (!value_fits(precision, link->damping * row) ||
+            !value_fits(precision, link->damping * row * inverse_mass[i]))
             return "weighted_link.damping";
     }
     return NULL;
@@ -76,16 +78,16 @@ static def_error check_methods(uint32_t methods)
     return methods >> SPRING_METHOD_COUNT == 0 ? no_error : invalid("methods", 0);
 }
 
-static def_error check_contacts(const spring_scene_def *def, size_t number)
+static def_error check_contacts(const spring_scene_def *def, size_t precision)
 {
     if (def->colliders > 0 && axes_of(def) == 1)
         return (def_error){SPRING_EUNSUPPORTED, "colliders", 0};
     if (def->colliders > most_colliders)
         return (def_error){SPRING_ERANGE, "colliders", 0};
-    return value_not_negative(number, def->particle_radius) ? no_error : invalid("particle_radius", 0);
+    return value_not_negative(precision, def->particle_radius) ? no_error : invalid("particle_radius", 0);
 }
 
-static def_error check_head(const spring_scene_def *def, size_t number)
+static def_error check_head(const spring_scene_def *def, size_t precision)
 {
     const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY |
                            SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES;
@@ -111,39 +113,39 @@ static def_error check_head(const spring_scene_def *def, size_t number)
         return invalid("link", 0);
     if (def->weighted_link == NULL && def->weighted_links > 0)
         return invalid("weighted_link", 0);
-    if (def->mass == NULL && def->mass_all != 0 && !mass_valid(number, def->mass_all))
+    if (def->mass == NULL && def->mass_all != 0 && !mass_valid(precision, def->mass_all))
         return invalid("mass_all", 0);
     for (uint32_t a = 0; a < axes_of(def); a++)
-        if (!value_fits(number, def->gravity[a]))
+        if (!value_fits(precision, def->gravity[a]))
             return invalid("gravity", a);
-    if (!value_not_negative(number, def->drag))
+    if (!value_not_negative(precision, def->drag))
         return invalid("drag", 0);
-    return value_not_negative(number, def->max_speed) ? check_contacts(def, number) : invalid("max_speed", 0);
+    return value_not_negative(precision, def->max_speed) ? check_contacts(def, precision) : invalid("max_speed", 0);
 }
 
-static def_error check_particles(const spring_scene_def *def, size_t number)
+static def_error check_particles(const spring_scene_def *def, size_t precision)
 {
     const uint32_t axes = axes_of(def);
     for (size_t i = 0; i < def->particles; i++) {
         for (uint32_t a = 0; a < axes; a++) {
-            if (!value_fits(number, def->position[i * axes + a]))
+            if (!value_fits(precision, def->position[i * axes + a]))
                 return invalid("position", i);
-            if (def->velocity != NULL && !value_fits(number, def->velocity[i * axes + a]))
+            if (def->velocity != NULL && !value_fits(precision, def->velocity[i * axes + a]))
                 return invalid("velocity", i);
         }
-        if (!is_pinned(def, i) && !mass_valid(number, mass_of(def, i)))
+        if (!is_pinned(def, i) && !mass_valid(precision, mass_of(def, i)))
             return invalid("mass", i);
-        if (!value_fits(number, def->drag * inverse_mass_of(def, number, i)))
+        if (!value_fits(precision, def->drag * inverse_mass_of(def, precision, i)))
             return invalid("drag", i);
-        if (def->colliders > 0 && def->radius != NULL && !value_not_negative(number, def->radius[i]))
+        if (def->colliders > 0 && def->radius != NULL && !value_not_negative(precision, def->radius[i]))
             return invalid("radius", i);
-        if (def->colliders > 0 && def->friction != NULL && !value_not_negative(number, def->friction[i]))
+        if (def->colliders > 0 && def->friction != NULL && !value_not_negative(precision, def->friction[i]))
             return invalid("friction", i);
     }
     return no_error;
 }
 
-static def_error check_links(const spring_scene_def *def, size_t number)
+static def_error check_links(const spring_scene_def *def, size_t precision)
 {
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
@@ -157,17 +159,17 @@ static def_error check_links(const spring_scene_def *def, size_t number)
             return invalid("link.flags", i);
         if (link->flags != 0 && axes_of(def) == 1)
             return (def_error){SPRING_EUNSUPPORTED, "link.flags", i};
-        const char *field = spring_link_invalid_field(link, number);
+        const char *field = spring_link_invalid_field(link, precision);
         if (field == NULL)
-            field = spring_link_overflows(link, number, inverse_mass_of(def, number, link->a),
-                                          inverse_mass_of(def, number, link->b));
+            field = spring_link_overflows(link, precision, inverse_mass_of(def, precision, link->a),
+                                          inverse_mass_of(def, precision, link->b));
         if (field != NULL)
             return invalid(field, i);
     }
     return no_error;
 }
 
-static def_error check_weighted_links(const spring_scene_def *def, size_t number)
+static def_error check_weighted_links(const spring_scene_def *def, size_t precision)
 {
     for (size_t i = 0; i < def->weighted_links; i++) {
         const spring_weighted_link *link = &def->weighted_link[i];
@@ -180,11 +182,11 @@ static def_error check_weighted_links(const spring_scene_def *def, size_t number
             for (int before = 0; before < k; before++)
                 if (link->weight[before] != 0 && link->particle[before] == link->particle[k])
                     return invalid("weighted_link.particle", i);
-            inverse[k] = inverse_mass_of(def, number, link->particle[k]);
+            inverse[k] = inverse_mass_of(def, precision, link->particle[k]);
         }
-        const char *field = spring_weighted_invalid_field(link, number);
+        const char *field = spring_weighted_invalid_field(link, precision);
         if (field == NULL)
-            field = spring_weighted_overflows(link, number, inverse);
+            field = spring_weighted_overflows(link, precision, inverse);
         if (field != NULL)
             return invalid(field, i);
     }
@@ -204,25 +206,25 @@ static def_error check_velocities(const spring_scene_def *def)
     return no_error;
 }
 
-static def_error check(const spring_scene_def *def, size_t number)
+static def_error check(const spring_scene_def *def, size_t precision)
 {
     if (def == NULL)
         return invalid("def", 0);
-    def_error found = check_head(def, number);
+    def_error found = check_head(def, precision);
     if (found.status == SPRING_OK)
-        found = check_particles(def, number);
+        found = check_particles(def, precision);
     if (found.status == SPRING_OK)
-        found = check_links(def, number);
+        found = check_links(def, precision);
     if (found.status == SPRING_OK)
-        found = check_weighted_links(def, number);
+        found = check_weighted_links(def, precision);
     if (found.status == SPRING_OK)
         found = check_velocities(def);
     return found;
 }
 
-spring_status spring_definition_check(const spring_scene_def *def, size_t number, const char **field, size_t *index)
+spring_status spring_definition_check(const spring_scene_def *def, size_t precision, const char **field, size_t *index)
 {
-    const def_error found = check(def, number);
+    const def_error found = check(def, precision);
     if (field != NULL)
         *field = found.field;
     if (index != NULL)

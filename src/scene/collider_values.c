@@ -6,10 +6,10 @@
 
 #include "../simd/size_begin.h"
 
-static bool fits3(size_t number, const double v[3], uint32_t axes)
+static bool fits3(size_t precision, const double v[3], uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
-        if (!value_fits(number, v[a]))
+        if (!value_fits(precision, v[a]))
             return false;
     return true;
 }
@@ -67,52 +67,52 @@ void spring_collider_orthonormalise(spring_collider *c, uint32_t axes)
     }
 }
 
-static bool fits_angles(size_t number, const double v[3], uint32_t axes)
+static bool fits_angles(size_t precision, const double v[3], uint32_t axes)
 {
-    return axes == 2 ? value_fits(number, v[2]) : fits3(number, v, axes);
+    return axes == 2 ? value_fits(precision, v[2]) : fits3(precision, v, axes);
 }
 
-const char *spring_collider_invalid_field(const spring_collider *c, size_t number, double radius, uint32_t axes)
+const char *spring_collider_invalid_field(const spring_collider *c, size_t precision, double radius, uint32_t axes)
 {
     const double tolerance = 1e-3; /* of axes; products of many matrices of floats have errors of 1e-6 */
     const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE,
                custom = c->shape == SPRING_CUSTOM;
     if (!plane && !capsule && !custom && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
         return "shape";
-    if (!fits3(number, c->at, axes))
+    if (!fits3(precision, c->at, axes))
         return "at";
-    if (capsule && !fits3(number, c->to, axes))
+    if (capsule && !fits3(precision, c->to, axes))
         return "to";
     if (!(orthonormality_error(c, axes_of_shape(c, axes), axes) <= tolerance))
         return "axis";
-    if (plane && !value_fits(number, dot_of(c->axis[0], c->at, axes) + radius))
+    if (plane && !value_fits(precision, dot_of(c->axis[0], c->at, axes) + radius))
         return "at";
     for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
-        if (!value_not_negative(number, c->half[a]))
+        if (!value_not_negative(precision, c->half[a]))
             return "half";
-    if (!plane && !(c->radius >= 0 && value_not_negative(number, c->radius + radius)))
+    if (!plane && !(c->radius >= 0 && value_not_negative(precision, c->radius + radius)))
         return "radius";
-    if (!fits3(number, c->velocity, axes))
+    if (!fits3(precision, c->velocity, axes))
         return "velocity";
-    if (capsule && !fits3(number, c->velocity_to, axes))
+    if (capsule && !fits3(precision, c->velocity_to, axes))
         return "velocity_to";
-    if (!fits_angles(number, c->spin, axes))
+    if (!fits_angles(precision, c->spin, axes))
         return "spin";
-    if (!value_not_negative(number, c->friction))
+    if (!value_not_negative(precision, c->friction))
         return "friction";
     if (!(c->restitution >= 0 && c->restitution <= 1))
         return "restitution";
-    if (!fits3(number, c->acceleration, axes))
+    if (!fits3(precision, c->acceleration, axes))
         return "acceleration";
-    if (!fits_angles(number, c->spin_acceleration, axes))
+    if (!fits_angles(precision, c->spin_acceleration, axes))
         return "spin_acceleration";
-    if (!fits3(number, c->surface, axes))
+    if (!fits3(precision, c->surface, axes))
         return "surface";
     if (custom && c->gap == NULL)
         return "gap";
-    if (custom && !(c->thickness > 0 && value_fits(number, c->thickness)))
+    if (custom && !(c->thickness > 0 && value_fits(precision, c->thickness)))
         return "thickness";
-    return custom && !value_not_negative(number, c->bound) ? "bound" : NULL;
+    return custom && !value_not_negative(precision, c->bound) ? "bound" : NULL;
 }
 
 static void store3(double to[3], vector3 from)
@@ -187,8 +187,8 @@ void spring_state_colliders(spring_collider *own, uint32_t set, size_t count, ui
     }
 }
 
-bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size_t count, uint8_t *state, size_t number,
-                                  double radius, uint32_t axes)
+bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size_t count, uint8_t *state,
+                                  size_t precision, double radius, uint32_t axes)
 {
     bool valid = true;
     for (size_t i = 0; i < count && valid; i++) {
@@ -196,7 +196,7 @@ bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size
         const bool custom = i < set && own[i].shape == SPRING_CUSTOM;
         const uint32_t shape = (uint32_t)word_at(state + i * collider_words * word_bytes);
         valid = shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
-                spring_collider_invalid_field(&c, number, radius, axes) == NULL;
+                spring_collider_invalid_field(&c, precision, radius, axes) == NULL;
     }
     return valid;
 }

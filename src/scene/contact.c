@@ -28,8 +28,8 @@
  *           start is carried by the rigid motion.
  * Kick      The last kick, for colliders that were touched: v loses its components into them, by the least change
  *           with n_i.v >= n_i.V_i, with friction of at most mu times each of these. Static friction gives v = V.
- * Impulses  A contact that changes the end of the path from x to x1 and the velocity from w to w1 gives m (w - w1) and
- *           m (x * w - x1 * w1) to its collider, with the vector product. A free path keeps x * w, so this is exact for
+ * Impulses  A contact that changes the end of the path from x to x1 and the velocity from w to w1 gives its collider the
+ *           impulse m (w - w1) and the angular impulse m (x * w - x1 * w1), where * is the vector product. A free path keeps x * w, so this is exact for
  *           changes at any time of the step, and for displacements.
  * Order     2 with leapfrog and RK4, also across impacts, with sliding friction, and across reversals: docs/evidence.md.
  * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
@@ -509,16 +509,22 @@ static unsigned find_all(contact_particle *p, const contact_body *b, const body_
 }
 
 /* [m] Gaps below this are rounding errors. */
-SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, double size)
+SPRING_INLINE double slop_at(const contact_setting *s, vector3 x, double size, double particle_radius)
 {
-    return 8 * s->epsilon * (largest_of(p->x0) + size + p->radius);
+    return 8 * s->epsilon * (largest_of(x) + size + particle_radius);
 }
 
-/* [m] Contacts whose gaps differ by less act together in a stop. It depends on the pose and not on the step, so that the
-   end of a step has the result of the start of the next. */
-static double same_gap(const contact_setting *s, const contact_particle *p, const contact_body *b, bool at_end)
+SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, const contact_body *b)
 {
-    return same_place * slop_of(s, p, size_at(b, at_end ? &b->end : &b->start));
+    return slop_at(s, p->x0, b->size, p->radius);
+}
+
+/* [m] Contacts whose gaps differ by less act together in a stop at x. It depends on the pose and not on the step, so
+   that the end of a step has the result of the start of the next. */
+static double gap_tolerance(const contact_setting *s, const contact_particle *p, const contact_body *b, bool at_end,
+                            vector3 x)
+{
+    return same_place * slop_at(s, x, size_at(b, at_end ? &b->end : &b->start), p->radius);
 }
 
 /* [m/s] Velocity of a point of the frame at x. */
@@ -548,7 +554,8 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-/* The moment is (x - x1) * w1 + (x - origin) * (w - w1). w1 stands for the velocity at the end of the step. */
+/* The moment is (x - x1) * w1 + (x - origin) * (w - w1). In the first term,
+   w1 + kick is the velocity at the end of the step. */
 void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
                            const vector3 *w, const vector3 *x1, const vector3 *w1)
 {
@@ -765,7 +772,7 @@ static bool find_custom_impact(contact_particle *p, meeting *m)
 static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 {
     const contact_body *const b = m->b;
-    m->slop = slop_of(s, p, b->size);
+    m->slop = slop_of(s, p, b);
     m->start = place_in(&b->start, p->x0);
     m->way = subtract(end_in_frame(b, p), m->start);
     m->fraction = 0;
@@ -1163,9 +1170,11 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
         stop_jointly(s, p, c, count, x, v);
         return;
     }
+    if (count == 0)
+        return;
     const vector3 u = subtract(*v, c->velocity), before = *v;
     const double rate = inner(u, c->n);
-    if (count == 0 || !(rate * s->h < 0))
+    if (!(rate * s->h < 0))
         return;
     const vector3 along = tangential(u, c->n);
     const double limit = c->friction * fabs(rate), square = inner(along, along);
@@ -1183,7 +1192,8 @@ void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t
     unsigned count = 0;
     for (unsigned i = 0; i < s->count; i++)
         if ((touched >> i & 1) != 0)
-            count = add_constraints(p, &s->body[i], i, at_end, x, same_gap(s, p, &s->body[i], at_end), c, count);
+            count =
+                add_constraints(p, &s->body[i], i, at_end, x, gap_tolerance(s, p, &s->body[i], at_end, x), c, count);
     stop(s, p, c, count, x, v);
 }
 
@@ -1196,7 +1206,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
-        const double margin = b->growth * (reach_of_box * p->radius + way_of_box * way) + 4 * slop_of(s, p, b->size);
+        const double margin = b->growth * (reach_of_box * p->radius + way_of_box * way) + 4 * slop_of(s, p, b);
         bool meets = (b->bits & p->bits) != 0;
         for (int a = 0; a < 3 && meets; a++) {
             const double at = component(p->x0, a);
@@ -1223,7 +1233,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
             const unsigned before = count,
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
-                const bool deep = c[k].least > slop_of(s, p, s->body[i].size);
+                const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
                 any_inside = any_inside || deep;
                 inside |= (uint32_t)deep << i;
                 if ((inside >> i & 1) != 0 || ((p->touched >> i & 1) != 0 && -c[k].least < way))
@@ -1288,8 +1298,8 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
             continue;
         constraint c[most_constraints];
         contact_particle particle = *p;
-        const double most = same_gap(&s, p, &body[k], at_end);
-        const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, most, c, 0);
+        const double tolerance = gap_tolerance(&s, p, &body[k], at_end, x);
+        const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, tolerance, c, 0);
         for (unsigned i = 0; i < found; i++)
             surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction, k};
     }

@@ -83,9 +83,9 @@ typedef struct contact_surface {
     unsigned index;   /* of the collider */
 } contact_surface;
 
-/* The name of the first field of a collider that is not valid; NULL: none. number: see definition.h. radius: [m] of
+/* The name of the first field of a collider that is not valid; NULL: none. precision: see definition.h. radius: [m] of
    particles, the largest */
-SPRING_INTERNAL const char *spring_collider_invalid_field(const spring_collider *c, size_t number, double radius,
+SPRING_INTERNAL const char *spring_collider_invalid_field(const spring_collider *c, size_t precision, double radius,
                                                           uint32_t axes);
 
 /* Replaces its axes by the nearest orthonormal ones. */
@@ -105,8 +105,8 @@ SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_part
 SPRING_INTERNAL void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end,
                                          vector3 x, vector3 *v);
 
-/* Adds what collider i is given by a change of the velocity of a particle from w to w1, and of the place where it is
-   afterwards from x to x1. */
+/* Adds to collider i the impulse of a contact that changes the velocity of a particle from w to w1, and its position
+   from x to x1. */
 SPRING_INTERNAL void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i,
                                            const vector3 *x, const vector3 *w, const vector3 *x1, const vector3 *w1);
 

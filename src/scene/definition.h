@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The definition of a scene of either precision: its values with their defaults, and functions that are compiled once
-   for both precisions. Their argument `number` is the number of bytes of a number of the scene, sizeof(scalar). */
+   for both precisions. Their argument `precision` is sizeof(scalar) of the scene. */
 #ifndef SPRINGSTEP_DEFINITION_H
 #define SPRINGSTEP_DEFINITION_H
 
@@ -14,24 +14,24 @@
 /* ----------------------------------------------------------------------------------------------------------- values */
 
 /* A value as the scene stores it. */
-static inline double stored_value(size_t number, double value)
+static inline double stored_value(size_t precision, double value)
 {
-    return number == sizeof(float) ? (double)(float)value : value;
+    return precision == sizeof(float) ? (double)(float)value : value;
 }
 
-static inline bool value_fits(size_t number, double value) /* finite in the precision of the scene */
+static inline bool value_fits(size_t precision, double value) /* finite in the precision of the scene */
 {
-    return spring_finite(stored_value(number, value));
+    return spring_finite(stored_value(precision, value));
 }
 
-static inline bool value_not_negative(size_t number, double value)
+static inline bool value_not_negative(size_t precision, double value)
 {
-    return value >= 0 && value_fits(number, value);
+    return value >= 0 && value_fits(precision, value);
 }
 
-static inline bool mass_valid(size_t number, double mass)
+static inline bool mass_valid(size_t precision, double mass)
 {
-    return mass > 0 && value_fits(number, mass) && value_fits(number, 1 / mass);
+    return mass > 0 && value_fits(precision, mass) && value_fits(precision, 1 / mass);
 }
 
 static inline uint32_t axes_of(const spring_scene_def *def)
@@ -50,9 +50,9 @@ static inline double mass_of(const spring_scene_def *def, size_t i)
 }
 
 /* 0: pinned */
-static inline double inverse_mass_of(const spring_scene_def *def, size_t number, size_t i)
+static inline double inverse_mass_of(const spring_scene_def *def, size_t precision, size_t i)
 {
-    return is_pinned(def, i) ? 0 : stored_value(number, 1 / mass_of(def, i));
+    return is_pinned(def, i) ? 0 : stored_value(precision, 1 / mass_of(def, i));
 }
 
 /* A tether acts while exactly one of its ends is pinned. */
@@ -134,15 +134,16 @@ static inline three_points three_points_of(const spring_weighted_link *link)
 
 /* ----------------------------------------------------------------------------------------- functions on definitions */
 
-SPRING_INTERNAL spring_status spring_definition_check(const spring_scene_def *def, size_t number, const char **field,
+SPRING_INTERNAL spring_status spring_definition_check(const spring_scene_def *def, size_t precision, const char **field,
                                                       size_t *index);
-SPRING_INTERNAL spring_status spring_definition_soften(const spring_scene_def *def, size_t number, double dt,
+SPRING_INTERNAL spring_status spring_definition_soften(const spring_scene_def *def, size_t precision, double dt,
                                                        double fraction, spring_link *link);
-SPRING_INTERNAL spring_status spring_definition_tethers(const spring_scene_def *def, size_t number, double fraction,
+SPRING_INTERNAL spring_status spring_definition_tethers(const spring_scene_def *def, size_t precision, double fraction,
                                                         double slack, spring_link *out, size_t *count, uint32_t *work,
                                                         double *distance);
 
-/* Checks a definition, and finds the layout of its scene. SPRING_ERANGE also if it exceeds the address space. */
+/* Checks a definition, and finds the layout of its scene. Returns SPRING_ERANGE also if the scene exceeds the
+   address space. */
 SPRING_INTERNAL spring_status spring_definition_layout(const spring_scene_def *def, const element_sizes *size,
                                                        scene_layout *l);
 
@@ -165,13 +166,13 @@ SPRING_INTERNAL uint8_t spring_weighted_points(const spring_weighted_link *link,
                                                uint8_t place[4]);
 
 /* The field of a link that is not valid for any masses; NULL: none. */
-SPRING_INTERNAL const char *spring_link_invalid_field(const spring_link *link, size_t number);
-SPRING_INTERNAL const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t number);
+SPRING_INTERNAL const char *spring_link_invalid_field(const spring_link *link, size_t precision);
+SPRING_INTERNAL const char *spring_weighted_invalid_field(const spring_weighted_link *link, size_t precision);
 
 /* The field that is too large for the masses of its particles; NULL: none. */
-SPRING_INTERNAL const char *spring_link_overflows(const spring_link *link, size_t number, double inverse_a,
+SPRING_INTERNAL const char *spring_link_overflows(const spring_link *link, size_t precision, double inverse_a,
                                                   double inverse_b);
-SPRING_INTERNAL const char *spring_weighted_overflows(const spring_weighted_link *link, size_t number,
+SPRING_INTERNAL const char *spring_weighted_overflows(const spring_weighted_link *link, size_t precision,
                                                       const double inverse_mass[4]);
 
 #endif

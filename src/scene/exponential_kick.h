@@ -165,7 +165,7 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
         free_component(p, axes, free);
         for (uint32_t a = 0; a < axes; a++) {
             p->load[a] = residual[a * stride + i] - free[a];
-            p->lost[a] = p->load[a];
+            p->removed[a] = p->load[a];
             residual[a * stride + i] = free[a];
         }
         found.count++;
@@ -188,19 +188,19 @@ static inline void project_pressed(const scene_step *s, const pressed_list *pres
         for (uint32_t a = 0; a < s->particles.axes; a++) {
             scalar *const at = &b[a * stride + p->particle];
             const scalar end = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
-            p->lost[a] = (from != NULL ? s->h * p->lost[a] : p->lost[a]) + (*at - end);
+            p->removed[a] = (from != NULL ? s->h * p->removed[a] : p->removed[a]) + (*at - end);
             *at = end;
         }
     }
 }
 
-/* Adds what collider k is given if the velocity of particle i at x loses `lost`. */
-static inline void record_change(const scene_step *s, size_t i, unsigned k, const scalar *x, vector3 lost)
+/* Adds to collider k the impulse of particle i, whose velocity at x decreases by `removed`. */
+static inline void record_change(const scene_step *s, size_t i, unsigned k, const scalar *x, vector3 removed)
 {
     contact_particle particle;
     const vector3 at = load_vector(x + i, s->particles.stride, s->particles.axes), zero = {0, 0, 0};
     scene_contact_particle(s->scene, i, &particle);
-    spring_contact_record(&s->contacts.setting, &particle, k, &at, &lost, &at, &zero);
+    spring_contact_record(&s->contacts.setting, &particle, k, &at, &removed, &at, &zero);
 }
 
 /* Accelerates pressed particles into their colliders by their loads, until their contacts are computed, so that these
@@ -234,9 +234,9 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
         for (uint32_t a = 0; a < axes && along < 0; a++) {
             scalar *const v = &v1[a * p->stride + one->particle], before = *v;
             *v += s->h * (along / square) * one->outwards[a];
-            one->lost[a] += before - *v;
+            one->removed[a] += before - *v;
         }
-        record_change(s, one->particle, one->collider, x, vector_from(one->lost));
+        record_change(s, one->particle, one->collider, x, vector_from(one->removed));
     }
 }
 
@@ -258,11 +258,11 @@ static inline void damp_bounces(const scene_step *s)
                 const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
                               u = vector_minus(v, surface[j].velocity);
                 const double leaving = u.x * n.x + u.y * n.y + u.z * n.z;
-                const double lost = (1 - (double)left[i]) * leaving;
+                const double removed = (1 - (double)left[i]) * leaving;
                 if (!(leaving > 0))
                     continue;
-                store_vector(s->whole.v + i, stride, axes, vector_plus(v, -lost, n));
-                record_change(s, i, k, s->whole.x, vector_times(lost, n));
+                store_vector(s->whole.v + i, stride, axes, vector_plus(v, -removed, n));
+                record_change(s, i, k, s->whole.x, vector_times(removed, n));
             }
         }
     }

@@ -6,11 +6,9 @@
 #include "../simd/size_begin.h"
 
 _Static_assert(sizeof(public_scene_def) == sizeof(spring_scene_def), "definitions have the same fields");
-_Static_assert(offsetof(public_scene_def, mask) == offsetof(spring_scene_def, mask),
-               "definitions have the same fields");
+_Static_assert(offsetof(public_scene_def, mask) == offsetof(spring_scene_def, mask), "fields have the same offsets");
 
-/* Copies a definition to the type of scenes in double, which functions for both precisions have. They do not call its
-   callback. */
+/* Copies a definition to the type for double, which functions for both precisions use. They never call its callback. */
 static const spring_scene_def *common_definition(const public_scene_def *def, spring_scene_def *copy)
 {
     if (def == NULL)
@@ -22,21 +20,26 @@ static const spring_scene_def *common_definition(const public_scene_def *def, sp
 static const element_sizes sizes = {
     .number = sizeof(scalar),
     .block = sizeof(spring_scene),
-    .tethers = sizeof(tether),
+    .tether = sizeof(tether),
     .weighted = sizeof(stored_weighted),
     .pressed = sizeof(pressed_particle),
-    .bounds = offsetof(collider_bounds, each),
-    .bound = sizeof(collider_bound),
+    .collider_bounds = offsetof(collider_bounds, each),
+    .collider_bound = sizeof(collider_bound),
 };
 
-spring_status spring_scene_bytes(const public_scene_def *definition, size_t *bytes)
+/* Copies a definition, and finds the layout of its scene. */
+static spring_status find_layout(const public_scene_def *from, spring_scene_def *def, scene_layout *layout)
 {
-    spring_scene_def copy;
-    const spring_scene_def *const def = common_definition(definition, &copy);
+    return spring_definition_layout(common_definition(from, def), &sizes, layout);
+}
+
+spring_status spring_scene_bytes(const public_scene_def *from, size_t *bytes)
+{
     if (bytes == NULL)
         return SPRING_EINVAL;
+    spring_scene_def def;
     scene_layout layout;
-    const spring_status status = spring_definition_layout(def, &sizes, &layout);
+    const spring_status status = find_layout(from, &def, &layout);
     if (status == SPRING_OK)
         *bytes = (size_t)layout.bytes;
     return status;
@@ -142,15 +145,14 @@ static void fill_weighted_links(spring_scene *s, const spring_scene_def *def)
 enum { least_alignment = 8 }; /* [bytes] of malloc() on all systems, also with 32 bits */
 _Static_assert(_Alignof(spring_scene) <= least_alignment, "memory from malloc() can hold a scene");
 
-spring_status spring_scene_init(void *memory, size_t bytes, const public_scene_def *definition, spring_scene **result)
+spring_status spring_scene_init(void *memory, size_t bytes, const public_scene_def *from, spring_scene **result)
 {
-    spring_scene_def copy;
-    const spring_scene_def *const def = common_definition(definition, &copy);
     if (result == NULL)
         return SPRING_EINVAL;
     *result = NULL;
+    spring_scene_def def;
     scene_layout layout;
-    const spring_status status = spring_definition_layout(def, &sizes, &layout);
+    const spring_status status = find_layout(from, &def, &layout);
     if (status != SPRING_OK)
         return status;
     if (memory == NULL)
@@ -164,21 +166,21 @@ spring_status spring_scene_init(void *memory, size_t bytes, const public_scene_d
     spring_scene *s = memory;
     *s = (spring_scene){
         .layout = layout,
-        .force = definition->force,
-        .user = def->user,
-        .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
-        .drag = def->drag,
-        .particle_radius = (scalar)def->particle_radius,
-        .largest_radius = (scalar)def->particle_radius,
-        .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : SCALAR_MAX,
+        .force = from->force,
+        .user = def.user,
+        .mass_all = def.mass_all == 0 ? 1 : def.mass_all,
+        .drag = def.drag,
+        .particle_radius = (scalar)def.particle_radius,
+        .largest_radius = (scalar)def.particle_radius,
+        .max_speed = def.max_speed > 0 ? (scalar)def.max_speed : SCALAR_MAX,
     };
     s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);
     spread(s->inverse_mass_vector);
-    scene_store_gravity(s, def->gravity);
-    fill_particles(s, def);
-    fill_links(s, def);
-    fill_weighted_links(s, def);
-    s->ends = spring_definition_ends(def);
+    scene_store_gravity(s, def.gravity);
+    fill_particles(s, &def);
+    fill_links(s, &def);
+    fill_weighted_links(s, &def);
+    s->ends = spring_definition_ends(&def);
     *result = s;
     return SPRING_OK;
 }

@@ -142,8 +142,8 @@ static uint32_t default_methods(void)
 {
     uint32_t methods = 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if (spring_method_limits[m].stable_step != NULL && spring_method_limits[m].quantities == 0 &&
-            spring_method_limits[m].factors == 0)
+        if (spring_method_limits[m].stable_step != NULL && spring_method_limits[m].stage_arrays == 0 &&
+            spring_method_limits[m].mass_factors == 0)
             methods |= 1u << m;
     return methods;
 }
@@ -156,7 +156,7 @@ static uint32_t methods_of(const spring_scene_def *def)
 /* Storage for the methods of a scene: the largest that one of them needs. */
 typedef struct storage_needs {
     bool predicts;
-    unsigned quantities, factors;
+    unsigned stage_arrays, mass_factors;
 } storage_needs;
 
 static storage_needs needs_of(uint32_t methods)
@@ -167,8 +167,8 @@ static storage_needs needs_of(uint32_t methods)
         if ((methods & 1u << m) == 0)
             continue;
         most.predicts = most.predicts || method->predicts;
-        most.quantities = method->quantities > most.quantities ? method->quantities : most.quantities;
-        most.factors = method->factors > most.factors ? method->factors : most.factors;
+        most.stage_arrays = method->stage_arrays > most.stage_arrays ? method->stage_arrays : most.stage_arrays;
+        most.mass_factors = method->mass_factors > most.mass_factors ? method->mass_factors : most.mass_factors;
     }
     return most;
 }
@@ -220,10 +220,10 @@ static void list_arrays(const spring_scene_def *def, const element_sizes *size, 
         [ARRAY_FORCE_0] = {number, quantity, true},
         [ARRAY_FORCE_1] = {number, quantity, predicts},
         [ARRAY_PREDICTED] = {number, quantity, predicts && damped && reads_later},
-        [ARRAY_STAGES] = {number, needs.quantities * quantity, needs.quantities > 0},
+        [ARRAY_STAGES] = {number, needs.stage_arrays * quantity, needs.stage_arrays > 0},
         [ARRAY_INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
         [ARRAY_FREE_MASS] = {number, l->particles, editable},
-        [ARRAY_MASS_FACTORS] = {number, needs.factors * l->masses, def->drag > 0 && needs.factors > 0},
+        [ARRAY_MASS_FACTORS] = {number, needs.mass_factors * l->masses, def->drag > 0 && needs.mass_factors > 0},
         [ARRAY_OCCUPIED] = {1, l->band_slots, l->bands > 0},
         [ARRAY_RINGS] = {number, l->band_ring, l->bands > 0},
         [ARRAY_BAND_STIFFNESS] = {number, coefficients, l->bands > 0},
@@ -235,7 +235,7 @@ static void list_arrays(const spring_scene_def *def, const element_sizes *size, 
         [ARRAY_LINK_REST] = {number, unbanded, l->unbanded > 0},
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
         [ARRAY_FLAGS] = {1, l->links, flagged},
-        [ARRAY_TETHERS] = {size->tethers, l->tethers, l->tethers > 0},
+        [ARRAY_TETHERS] = {size->tether, l->tethers, l->tethers > 0},
         [ARRAY_WEIGHTED] = {size->weighted, l->weighted, l->weighted > 0},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
@@ -247,7 +247,7 @@ static void list_arrays(const spring_scene_def *def, const element_sizes *size, 
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
         [ARRAY_PLACED] = {sizeof(contact_body), l->colliders, collides},
-        [ARRAY_BOUNDS] = {1, size->bounds + l->colliders * size->bound, collides},
+        [ARRAY_BOUNDS] = {1, size->collider_bounds + l->colliders * size->collider_bound, collides},
         [ARRAY_IMPULSES] = {sizeof(spring_impulse), 2 * (size_t)l->colliders, collides},
         [ARRAY_ORIGINS] = {sizeof(double[3]), l->colliders, collides},
         [ARRAY_RADIUS] = {number, l->particles + padding, collides && def->radius != NULL},
@@ -352,8 +352,6 @@ uint32_t spring_layout_weighted_slot(const scene_layout *l, const spring_weighte
     return points.offset > 0 ? slot_in_band(l, BAND_OF_THREE_POINTS, points.offset, points.lower, next) : no_slot;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- ends */
-
 uint8_t spring_weighted_points(const spring_weighted_link *link, uint32_t particle[4], uint8_t place[4])
 {
     int first = 0;
@@ -370,6 +368,8 @@ uint8_t spring_weighted_points(const spring_weighted_link *link, uint32_t partic
     }
     return points;
 }
+
+/* ------------------------------------------------------------------------------------------------------------- ends */
 
 static uint64_t hashed_numbers(uint64_t hash, const double *number, size_t count)
 {

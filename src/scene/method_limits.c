@@ -60,9 +60,11 @@ SPRING_TABLE const method_limits spring_method_limits[SPRING_METHOD_COUNT] = {
     [SPRING_LEAPFROG] = {.stable_step = scene_leapfrog_limit,
                          .predicts = true,
                          .explicit_limit = scene_leapfrog_explicit_limit},
-    [SPRING_RK4] = {.stable_step = scene_rk4_limit, .quantities = rk4_quantities},
-    [SPRING_RKN8] = {.stable_step = scene_rkn8_limit, .quantities = rkn8_quantities, .factors = rkn8_factors},
-    [SPRING_SRKN6] = {.stable_step = scene_srkn6_limit, .factors = srkn6_factors},
+    [SPRING_RK4] = {.stable_step = scene_rk4_limit, .stage_arrays = rk4_stage_arrays},
+    [SPRING_RKN8] = {.stable_step = scene_rkn8_limit,
+                     .stage_arrays = rkn8_stage_arrays,
+                     .mass_factors = rkn8_mass_factors},
+    [SPRING_SRKN6] = {.stable_step = scene_srkn6_limit, .mass_factors = srkn6_mass_factors},
 };
 
 #include "../simd/size_end.h"

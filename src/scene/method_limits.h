@@ -18,14 +18,14 @@ typedef struct scene_bounds {
     double least_drag;    /* [1/s]   drag divided by the largest mass */
 } scene_bounds;
 
-/* Storage of methods: quantities of all particles for stages, and with drag numbers for each mass. */
-enum { rk4_quantities = 4, rkn8_quantities = 8, rkn8_factors = 15, srkn6_factors = 12 };
+/* Storage of methods: arrays of a quantity of all particles for stages, and with drag numbers for each mass. */
+enum { rk4_stage_arrays = 4, rkn8_stage_arrays = 8, rkn8_mass_factors = 15, srkn6_mass_factors = 12 };
 
 typedef struct method_limits {
     double (*stable_step)(const scene_bounds *b); /* NULL: the method is not for scenes */
     bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities */
     double (*explicit_limit)(const scene_bounds *b); /* of dt; beyond, kicks are exponential: exponential_kick.h */
-    unsigned quantities, factors;
+    unsigned stage_arrays, mass_factors;
 } method_limits;
 
 SPRING_INTERNAL const method_limits spring_method_limits[SPRING_METHOD_COUNT];

@@ -193,7 +193,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             },
         .weighted = s->loose > 0 ? l->weighted : 0,
         .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
-        .directed = s->directed > 0,
+        .nonlinear = s->nonlinear > 0,
         .tension_only = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
         .isotropic = s->isotropic_links > 0,
     };
@@ -222,13 +222,14 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
                                   const scalar *v, scene_forces *out)
 {
     const common_kernels *const common = kernels->common;
-    const bool records = out->records != NULL && links->terms != FREEZING_TERMS;
-    const bool with_weighted = records && links->weighted > 0 && !links->directed;
+    const bool has_records = out->records != NULL && links->terms != FREEZING_TERMS;
+    const bool weighted_in_records = has_records && links->weighted > 0 && !links->nonlinear;
+    const bool records = weighted_in_records || (has_records && links->unbanded.count >= links->particles);
     if (links->all_bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
-    if (links->all_bands == 0 || links->unbanded.count > 0 || with_weighted)
+    if (links->all_bands == 0 || links->unbanded.count > 0 || weighted_in_records)
         (records ? common->record_forces : common->unbanded_forces)(links, x, v, out);
-    if (links->weighted > 0 && !with_weighted)
+    if (links->weighted > 0 && !weighted_in_records)
         spring_scene_add_weighted(links, x, v, out->force);
 }
 

@@ -48,12 +48,13 @@ static scene_outcome scene_rk4(scene_step *s)
 #include "../simd/size_begin.h"
 
 _Static_assert((int)rkn8_stages == (int)nystrom_stages, "the kernels compute the stages of RKN8");
-_Static_assert((int)rkn8_quantities == (int)rkn8_stages + 1, "RKN8 stores accelerations and the positions of a stage");
+_Static_assert((int)rkn8_stage_arrays == (int)rkn8_stages + 1,
+               "RKN8 stores accelerations and the positions of a stage");
 
 /* Indices of the factors that RKN8 stores for each mass, with drag: growth e^(g c h/2) and decay e^(-g c h/2) for each
    c of the stages after the first, and loss e^(-g h/2) - 1. */
 enum { RKN8_GROWTH, RKN8_DECAY = rkn8_stages, RKN8_LOSS = 2 * rkn8_stages };
-_Static_assert((int)rkn8_factors == (int)RKN8_LOSS + 1, "storage of all factors");
+_Static_assert((int)rkn8_mass_factors == (int)RKN8_LOSS + 1, "storage of all factors");
 
 static void compute_rkn8_factors(const scene_step *s)
 {
@@ -106,7 +107,7 @@ static scene_outcome scene_rkn8(scene_step *s)
 /* Indices of the factors that SRKN6 stores for each mass, with drag, for each of its different drifts; see
    scene_damped_drift. */
 enum { SRKN6_SPAN, SRKN6_LOSS = srkn6_different };
-_Static_assert((int)srkn6_factors == 2 * (int)srkn6_different, "storage of all factors");
+_Static_assert((int)srkn6_mass_factors == 2 * (int)srkn6_different, "storage of all factors");
 
 static void compute_srkn6_factors(const scene_step *s)
 {

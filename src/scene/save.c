@@ -384,7 +384,7 @@ static void settle_links(spring_scene *s, bool damped)
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
     s->damped_links = s->isotropic_links = 0;
-    s->loose = s->directed = 0;
+    s->loose = s->nonlinear = 0;
     settle_damping(s, ARRAY_BAND_DAMPING, ARRAY_BAND_REST, slots, damped);
     settle_damping(s, ARRAY_LINK_DAMPING, ARRAY_LINK_REST, l->unbanded, damped);
     for (size_t i = 0; i < l->tethers && !damped; i++)

@@ -57,38 +57,38 @@ typedef struct allowance {
     double left, factor;
 } allowance;
 
-static allowance allowance_of(const spring_scene_def *def, size_t number, const link_sums *sums, size_t first, size_t i,
-                              double most_rate2)
+static allowance allowance_of(const spring_scene_def *def, size_t precision, const link_sums *sums, size_t first,
+                              size_t i, double most_rate2)
 {
-    const double epsilon = number == sizeof(float) ? 0x1p-23 : 0x1p-52;
+    const double epsilon = precision == sizeof(float) ? 0x1p-23 : 0x1p-52;
     const double rounding = (sums->links[i - first] + 8.0) * epsilon, sum = sums->stiffness[i - first];
     const double left = most_rate2 * mass_of(def, i) - sums->weighted[i - first] / (1 - rounding);
     return (allowance){left, sum > left * (1 - rounding) ? left / sum * (1 - rounding) : 1};
 }
 
 /* Whether weighted links leave something to the links of every particle. */
-static bool weighted_links_leave_some(const spring_scene_def *def, size_t number, double most_rate2)
+static bool weighted_links_leave_some(const spring_scene_def *def, size_t precision, double most_rate2)
 {
     for (size_t first = 0; first < def->particles && def->weighted_links > 0; first += soften_block) {
         link_sums sums = {{0}, {0}, {0}};
         add_weighted_links(def, &sums, first);
         for (size_t i = first; i < def->particles && i - first < soften_block; i++)
-            if (sums.weighted[i - first] > 0 && !(allowance_of(def, number, &sums, first, i, most_rate2).left > 0))
+            if (sums.weighted[i - first] > 0 && !(allowance_of(def, precision, &sums, first, i, most_rate2).left > 0))
                 return false;
     }
     return true;
 }
 
-spring_status spring_definition_soften(const spring_scene_def *def, size_t number, double dt, double fraction,
+spring_status spring_definition_soften(const spring_scene_def *def, size_t precision, double dt, double fraction,
                                        spring_link *link)
 {
-    const spring_status status = spring_definition_check(def, number, NULL, NULL);
+    const spring_status status = spring_definition_check(def, precision, NULL, NULL);
     if (status != SPRING_OK)
         return status;
     const double root = 2 * fraction / dt, most_rate2 = root * root;
     if (!(dt > 0) || !spring_finite(dt) || !(fraction > 0 && fraction <= 1) || (link == NULL && def->links > 0))
         return SPRING_EINVAL;
-    if (!weighted_links_leave_some(def, number, most_rate2))
+    if (!weighted_links_leave_some(def, precision, most_rate2))
         return SPRING_ERANGE;
     if (def->links > 0)
         memmove(link, def->link, def->links * sizeof *link);
@@ -101,7 +101,7 @@ spring_status spring_definition_soften(const spring_scene_def *def, size_t numbe
         add_weighted_links(def, &sums, first);
         double *const factor = sums.stiffness; /* in the same place */
         for (size_t i = 0; i < soften_block && first + i < def->particles; i++)
-            factor[i] = allowance_of(def, number, &sums, first, first + i, most_rate2).factor;
+            factor[i] = allowance_of(def, precision, &sums, first, first + i, most_rate2).factor;
         for (size_t j = 0; j < def->links; j++) {
             const double a = in_block(first, link[j].a) ? factor[link[j].a - first] : 1;
             const double b = in_block(first, link[j].b) ? factor[link[j].b - first] : 1;

@@ -65,12 +65,12 @@ SPRING_INLINE uint64_t all_invalid_signs(const uint8_t *state, size_t bytes, uin
     return all;
 }
 
-bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool any_sign, uint64_t headroom)
+bool spring_state_valid(const uint8_t *state, size_t bytes, size_t precision, bool any_sign, uint64_t headroom)
 {
     /* In single precision, a word has two numbers. */
-    const uint64_t each = number == sizeof(float) ? UINT64_C(0x100000001) : 1;
-    const uint64_t sign = each * (number == sizeof(float) ? UINT64_C(0x80000000) : UINT64_C(0x8000000000000000));
-    const uint64_t last_bit = each * (number == sizeof(float) ? UINT64_C(0x00800000) : UINT64_C(0x0010000000000000));
+    const uint64_t each = precision == sizeof(float) ? UINT64_C(0x100000001) : 1;
+    const uint64_t sign = each * (precision == sizeof(float) ? UINT64_C(0x80000000) : UINT64_C(0x8000000000000000));
+    const uint64_t last_bit = each * (precision == sizeof(float) ? UINT64_C(0x00800000) : UINT64_C(0x0010000000000000));
     const uint64_t one = last_bit * (1 + headroom), exponents = sign - last_bit;
     return (sign & (any_sign ? all_invalid_signs(state, bytes, one, exponents, true)
                              : all_invalid_signs(state, bytes, one, exponents, false))) == 0;

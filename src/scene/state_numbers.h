@@ -77,8 +77,8 @@ static inline uint64_t hashed(uint64_t hash, uint64_t word)
 SPRING_INTERNAL uint64_t spring_state_check(const uint8_t *state, size_t bytes);
 
 /* Whether all numbers of a padded section are finite, also if they are multiplied by a number below 2^headroom, which
-   is less than the largest; and not negative, unless any_sign. number: [bytes] */
-SPRING_INTERNAL bool spring_state_valid(const uint8_t *state, size_t bytes, size_t number, bool any_sign,
+   is less than the largest; and not negative, unless any_sign. precision: [bytes] of a number */
+SPRING_INTERNAL bool spring_state_valid(const uint8_t *state, size_t bytes, size_t precision, bool any_sign,
                                         uint64_t headroom);
 
 enum { collider_words = 1 + 41 }; /* of a saved collider */
@@ -89,6 +89,6 @@ SPRING_INTERNAL void spring_state_colliders(spring_collider *own, uint32_t set, 
 
 /* Whether saved colliders are valid. The last arguments are those of spring_collider_invalid_field(). */
 SPRING_INTERNAL bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size_t count,
-                                                  uint8_t *state, size_t number, double radius, uint32_t axes);
+                                                  uint8_t *state, size_t precision, double radius, uint32_t axes);
 
 #endif

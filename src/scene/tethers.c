@@ -81,10 +81,10 @@ static bool hangs(const spring_scene_def *def, const hanging *h, size_t i)
     return !is_pinned(def, i) && h->pin[i] != no_pin && h->joined[i] == 0;
 }
 
-spring_status spring_definition_tethers(const spring_scene_def *def, size_t number, double fraction, double slack,
+spring_status spring_definition_tethers(const spring_scene_def *def, size_t precision, double fraction, double slack,
                                         spring_link *out, size_t *count, uint32_t *work, double *distance)
 {
-    const spring_status status = spring_definition_check(def, number, NULL, NULL);
+    const spring_status status = spring_definition_check(def, precision, NULL, NULL);
     if (status != SPRING_OK)
         return status;
     if (!(fraction > 0 && spring_finite(fraction) && slack >= 0 && spring_finite(slack)) || count == NULL ||

@@ -33,13 +33,13 @@ static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, co
         scene_fill_slot(s, to, scene_slot_place(s, to->slot).index);
 }
 
-/* Counts a weighted link. */
+/* Adds a weighted link to the counts of the scene, or removes it. */
 static inline void scene_count_weighted(spring_scene *s, const stored_weighted *l, bool added)
 {
     const uint64_t one = added ? 1 : (uint64_t)-1;
     s->damped_links += l->damping > 0 ? one : 0;
     s->loose += l->banded ? 0 : (size_t)one;
-    s->directed += l->rest > 0 && s->layout.axes > 1 ? (size_t)one : 0;
+    s->nonlinear += l->rest > 0 && s->layout.axes > 1 ? (size_t)one : 0;
 }
 
 /* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the

@@ -13,11 +13,11 @@
 /* Kernels for vectors of 16 bytes on x86-64 serve processors without AVX2, which are rare. They are compiled for size:
    conditions that other kernels compile as constants, one loop for each combination, are tested in the loop. */
 #if SPRING_VECTOR == 16 && SPRING_HAS_V256
-#define SPRING_COMPACT     1
-#define SPRING_REST_INLINE static inline /* for functions of contact_rest_tmpl.h */
+#define SPRING_COMPACT        1
+#define SPRING_CONTACT_INLINE static inline /* for functions of contact_rest_tmpl.h */
 #else
-#define SPRING_COMPACT     0
-#define SPRING_REST_INLINE SPRING_INLINE
+#define SPRING_COMPACT        0
+#define SPRING_CONTACT_INLINE SPRING_INLINE
 #endif
 
 #if SPRING_COMPACT && defined(__clang__)
