@@ -151,8 +151,8 @@ export declare class Spring {
 }
 
 /**
- * Many values, each with its own target. animate() notices changes of the arrays where they are read from this object:
- * `springs.target[i] = 1`.
+ * Many values, each with its own target. animate() detects changes only if you write `springs.target[i] = 1`, so do not
+ * keep an array in a variable.
  */
 export declare class Springs {
     /** Values, velocities and targets are 0. The default options are `{ duration: 0.5 }`. */

@@ -83,7 +83,7 @@ typedef struct spring_batchf {
  * @param[in]     dt  finite time step [s]; a negative step integrates backwards
  * @param[in]     n   number of steps
  * @return SPRING_OK: all springs advanced.
- *         SPRING_EINVAL, nothing changed: b, x, v or omega2 is NULL, unless count is 0; x or v overlaps another array;
+ *         SPRING_EINVAL, nothing changed: b is NULL; count is not 0, and x, v or omega2 is NULL; x or v overlaps another array;
  *         unknown method or bit in shared; dt or a shared parameter is not finite, or a shared parameter is negative
  *         where it must not be.
  *         SPRING_EUNSUPPORTED, nothing changed: a method for scenes only.
@@ -102,8 +102,8 @@ SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_me
 /**
  * Advances a batch like spring_batch_advance(), and returns the status of each spring.
  *
- * If no spring fails, it takes up to 1.7 times as long as spring_batch_advance() for a single step, and little longer
- * for many. Springs are advanced in groups of some hundred. A group in which a spring fails is advanced twice.
+ * If no spring fails, many steps take little longer than with spring_batch_advance(). A single step takes longer,
+ * because the springs are copied first. Springs are advanced in groups of some hundred. A group in which a spring fails is advanced twice.
  *
  * @param[out] failed  [count] status of spring i: SPRING_OK, which is 0, if it advanced; SPRING_EINVAL if its state or
  *                     parameters are invalid, and SPRING_ENONFINITE if it would have become non-finite. It must not

@@ -343,10 +343,10 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
- * with three to six significant digits: without drag the energy error of smooth motion stays bounded. One second of
- * the cloth of `spring-work --problem long-cloth` with an error of 1e-3 at the end takes 925 force evaluations, with RKN8
- * 801 and with leapfrog 2310. In stiff scenes leapfrog needs fewer. Drag is solved exactly together with the drift, so
- * the order is still 6.
+ * with three to six significant digits: without drag the energy error of smooth motion stays bounded. For one
+ * second of a cloth with an error of 1e-3 at the end, it needs about as many force evaluations as RKN8, and fewer than
+ * half as many as leapfrog (`spring-work --problem long-cloth`). In stiff scenes leapfrog needs fewer. Drag is solved
+ * exactly together with the drift, so the order is still 6.
  *
  * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4,
  * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the
@@ -356,11 +356,11 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * method. With a callback that may use velocities, leapfrog keeps no forces and evaluates them twice per step, because
  * the data of the callback may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
- * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass omega |v| in such a
+ * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass Omega |v| in such a
  * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
- * (omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency w, a fraction of about
- * omega dt (w dt)^3/8 per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy: the
- * fraction (omega dt)^6/72 per step without links. Both Euler methods gain (omega dt)^2 (tests/scene/test_forces.c).
+ * (Omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency omega, a fraction of about
+ * Omega dt (omega dt)^3/8 per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy:
+ * the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain (Omega dt)^2 (tests/scene/test_forces.c).
  *
  * Contacts have order 2 with leapfrog and RK4, also across impacts, with colliders that turn and accelerate, and with
  * friction across stops and reversals of direction. They have order 1 with symplectic Euler. See
@@ -424,8 +424,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * SRKN6, it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times
  * for such a cloth and 2 times for such a soft body; with RK4 and RKN8 it is larger. It is closer to the bound with
  * fewer springs or under tension: the ratio is 1 for a rope and for a height field of structural springs only, and 1.4
- * for a cloth that is stretched by half. With heavy damping, the limit may be several times larger, except for leapfrog
- * with drag alone.
+ * for a cloth that is stretched by half. With heavy damping, the limit may be several times the bound, but
+ * not for leapfrog with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -557,7 +557,7 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * collider in a step, this is treated as a rounding error, and the particle does not bounce.
  *
  * A particle that touches several colliders is kept out of all of them, also in a groove of 0.5 degrees. In a groove of
- * 90 to 165 degrees without friction, it may go on swinging with a speed of up to 2 g dt. A custom body that is concave
+ * 90 to 165 degrees without friction, it may keep oscillating at up to 2 g dt. A custom body that is concave
  * counts as several bodies only where it returns several contacts. Links do not collide, so a thin collider can pass
  * between two particles. A step with negative dt does not undo a step.
  *
@@ -596,9 +596,8 @@ SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, con
 /**
  * Gets the colliders as they are now, with their present positions, axes, velocities and spins.
  *
- * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only, unless a spin
- * acceleration is not parallel to the spin: then their further rotation is another one. Use the function to draw the
- * colliders of a loaded state, or to change one collider and keep the others.
+ * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only, if each spin
+ * acceleration is parallel to the spin. Otherwise their later rotation differs. Use the function to draw the colliders of a loaded state, or to change one collider and keep the others.
  *
  * @param[out]    out    may be NULL: only *count is written
  * @param[in,out] count  size of out; afterwards the number of colliders
@@ -683,8 +682,8 @@ SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t
  * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
  * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
  *
- * If no banded link tears, the lengths of banded links are compared with SIMD. This takes about a third of the time of
- * a step of cloth; for bands see spring_links_renumber().
+ * If no banded link tears, the lengths of banded links are compared with SIMD. This takes less time than a
+ * step; for bands see spring_links_renumber().
  *
  * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
  *                      NULL

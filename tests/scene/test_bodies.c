@@ -353,6 +353,30 @@ static void grooves(void)
             }
 }
 
+/* Two planes that enclose 90 to 165 degrees, without friction: after a minute, a particle is at most as fast as scene.h
+   says. */
+static void wide_grooves(void)
+{
+    double fastest = 0; /* in units of g dt */
+    for (int i = 0; i < 60; i++) {
+        const double half = random_uniform(90, 165) * PI / 360, dt = random_log(1. / 960, 1. / 60);
+        const double x[3] = {random_uniform(-0.4, 0.4), 0.5, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
+        spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}},
+                                {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}}};
+        spring_scene *s = particle_at(x, none, g, 2);
+        set(s, c, 2);
+        run(s, SPRING_LEAPFROG, dt, (uint64_t)(60 / dt));
+        for (int k = 0; k < 200; k++) {
+            double now[3], v[3];
+            run(s, SPRING_LEAPFROG, dt, 1);
+            get(s, now, v);
+            fastest = fmax(fastest, length(v) / (gravity * dt));
+        }
+        free(s);
+    }
+    CHECK_BELOW(fastest, 2, "speed in a wide groove, in units of g dt: spring_scene_set_colliders()");
+}
+
 /* -------------------------------------------------------------------------------------------------------- tunnelling */
 
 /* A plate 2 b thick flies through a cloud at up to 500 m/s and turns by up to 0.2 rad in a step. */
@@ -1106,6 +1130,7 @@ static const test tests[] = {
     {"platforms", platforms},
     {"friction across reversals", friction_across_reversals},
     {"grooves", grooves},
+    {"wide grooves", wide_grooves},
 };
 
 int main(void)
