@@ -20,11 +20,11 @@ static const spring_scene_def *common_definition(const public_scene_def *def, sp
 static const element_sizes sizes = {
     .number = sizeof(scalar),
     .block = sizeof(spring_scene),
-    .tether = sizeof(tether),
+    .tether_link = sizeof(tether),
     .weighted = sizeof(stored_weighted),
     .pressed = sizeof(pressed_particle),
-    .collider_bounds = offsetof(collider_bounds, each),
-    .collider_bound = sizeof(collider_bound),
+    .bounds_head = offsetof(collider_bounds, each),
+    .bound = sizeof(collider_bound),
 };
 
 /* Copies a definition, and finds the layout of its scene. */

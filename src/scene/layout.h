@@ -80,8 +80,8 @@ typedef struct band_layout {
 
 /* [bytes] of elements that depend on the precision */
 typedef struct element_sizes {
-    size_t number, block, tether, weighted, pressed; /* block: struct spring_scene */
-    size_t collider_bounds, collider_bound;          /* collider_bounds: without colliders */
+    size_t number, block, tether_link, weighted, pressed; /* block: struct spring_scene */
+    size_t bounds_head, bound; /* a collider_bounds without colliders, and a collider_bound */
 } element_sizes;
 
 typedef struct scene_layout {
