@@ -78,7 +78,7 @@ def performance():
     others = [(f'Bullet {versions["bullet"]}, one position iteration per step', 'bullet'),
               (f'Chipmunk2D {versions["chipmunk"]}, damped springs (built by `tools/bench/optimised`)', 'chipmunk')]
     ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
-    ratios.append(('XPBD of `spring-work`, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
+    ratios.append(('XPBD of this repository, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
     used = ['engines', 'stiff-forces', *(f'plan-{scene}' for scene in SCENES)]
     processors = {read(name)[0]['processor'] for name in used}
     if len(processors) != 1:

@@ -32,18 +32,18 @@ static spring_status advance_frame(spring_scene *s, spring_clock *clock, double 
     const uint64_t n = spring_clock_tick(clock, frame_time, dt, 64, NULL); /* at most 64 steps in a frame */
     if (n == 0)
         return SPRING_OK;
-    /* `time` is from the scene time to the frame time. For skipped time, the whole scene moves with the hand. */
+    /* `time`: from the simulation time to the render time. During skipped time, the whole scene moves with the hand. */
     const double steps = (double)n * dt, time = steps + clock->pending; /* [s] */
     if (clock->skipped > 0)
         move_along(s, hand, clock->skipped / (clock->skipped + time));
     spring_scene_drive(s, 0, hand, time);
     const spring_status status = spring_scene_advance(s, SPRING_LEAPFROG, dt, n);
-    if (status != SPRING_OK) /* no step was taken, so their time is skipped, too */
+    if (status != SPRING_OK) /* no step was taken: their time is skipped, too */
         move_along(s, hand, steps / time);
     return status;
 }
 
-/* Positions at the frame time, which is `pending` after the scene time. v is a work array. */
+/* Positions at the render time, which is `pending` after the simulation time. v is a work array. */
 static void positions_now(const spring_scene *s, size_t particles, double pending, float (*x)[3], float (*v)[3])
 {
     spring_scene_getf(s, SPRING_POSITION, x[0], 3, 0, particles);
