@@ -134,7 +134,7 @@ def cape():
     steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('without tethers, too', parts['none'])]
     return '\n\n'.join([
         table(('solver', 'precision', 'tethers', 'fraction of the stable step', 'stretch 6 % (`spring-work`)', 'stretch 3 %'), ['---'] * 6, *rows),
-        table(('compared with', 'stretch', 'time of the first row, relative'), ['---'] * 3, *ratios),
+        table(('compared with', 'stretch', 'time of the first row / time of this solver'), ['---'] * 3, *ratios),
         table((f"{whole['steps_per_frame']} steps per 1/60 s", 'time (`spring-work`)'), ['---'] * 2,
               *((title, f"{two_digits(row['time_us'])} µs") for title, row in steps)),
         f"Measured on one core of an {comments['processor']}.".replace('(R)', ''),

@@ -102,8 +102,8 @@ SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_me
 /**
  * Advances a batch like spring_batch_advance(), and returns the status of each spring.
  *
- * If no spring fails, many steps take little longer than with spring_batch_advance(). A single step takes longer,
- * because the springs are copied first. Springs are advanced in groups of some hundred. A group in which a spring fails is advanced twice.
+ * A call takes longer than with spring_batch_advance(), because the springs are copied first. With many steps the
+ * difference is small. Springs are advanced in groups of some hundred. A group in which a spring fails is advanced twice.
  *
  * @param[out] failed  [count] status of spring i: SPRING_OK, which is 0, if it advanced; SPRING_EINVAL if its state or
  *                     parameters are invalid, and SPRING_ENONFINITE if it would have become non-finite. It must not

@@ -345,7 +345,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
  * with three to six significant digits: without drag the energy error of smooth motion stays bounded. For one
  * second of a cloth with an error of 1e-3 at the end, it needs about as many force evaluations as RKN8, and fewer than
- * half as many as leapfrog (`spring-work --problem long-cloth`). In stiff scenes leapfrog needs fewer. Drag is solved
+ * half as many as leapfrog (`spring-work --problem long-cloth`). For such an error in a stiff scene leapfrog needs
+ * fewer (`--problem stiff-cloth`). Drag is solved
  * exactly together with the drift, so the order is still 6.
  *
  * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4,
@@ -682,8 +683,8 @@ SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t
  * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
  * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
  *
- * If no banded link tears, the lengths of banded links are compared with SIMD. This takes less time than a
- * step; for bands see spring_links_renumber().
+ * If no banded link tears, the lengths of banded links are compared with SIMD. For bands see
+ * spring_links_renumber().
  *
  * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
  *                      NULL
@@ -1069,7 +1070,7 @@ SPRING_API size_t spring_links_components(size_t particles, size_t links, const 
  * Makes tethers: a tension-only link (SPRING_LINK_TETHER) from each particle to the pinned particle that it hangs on,
  * as long as the way to it along links. Tethers keep ropes and cloth from stretching at time steps for which their
  * links are soft. A rope of 40 links of 0.05 m that hangs at rest and takes 4 steps per frame of 1/60 s, at half of
- * the stable step, is 0.2 % too long with tethers of fraction 0.05, and 28 % without.
+ * the stable step, is 0.2 % too long with tethers of fraction 0.05, and 28 % without (tests/scene/test_tethers.c).
  *
  * There is one tether for each free particle that links connect with a pinned particle and that no link with stiffness
  * joins to a pinned particle directly. Links without stiffness, tethers of the definition and weighted links do not
