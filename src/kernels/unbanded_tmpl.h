@@ -34,7 +34,7 @@ SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
 #define UNROLL_AXES
 #else
 #define COPY_PER_AXES 1
-#define UNROLL_AXES SPRING_UNROLL
+#define UNROLL_AXES   SPRING_UNROLL
 #endif
 
 /* Quantities have an array for each axis. */

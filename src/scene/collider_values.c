@@ -75,8 +75,7 @@ static bool fits_angles(size_t precision, const double v[3], uint32_t axes)
 const char *spring_collider_invalid_field(const spring_collider *c, size_t precision, double radius, uint32_t axes)
 {
     const double tolerance = 1e-3; /* of axes; products of many matrices of floats have errors of 1e-6 */
-    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE,
-               custom = is_custom(c->shape);
+    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE, custom = is_custom(c->shape);
     if (!plane && !capsule && !custom && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
         return "shape";
     if (!fits3(precision, c->at, axes))

@@ -314,8 +314,7 @@ static void bound_with_box(contact_body *b, double margin)
 static void find_bounds(contact_body *b, double angle, double custom_bound)
 {
     const double infinite = (double)INFINITY, shift = length3(subtract(b->end.at, b->start.at));
-    const double radius =
-        is_custom(b->shape) ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
+    const double radius = is_custom(b->shape) ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
     double stretch = 0;
     if (b->shape == SPRING_CAPSULE)
         stretch = length3(subtract(b->end.segment, b->start.segment));

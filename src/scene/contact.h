@@ -16,7 +16,7 @@ enum { most_colliders = 32 }; /* bits of a mask */
 static const double reach_of_box = 1.04, way_of_box = 4.2;
 
 /* SPRING_NO_CUSTOM omits the code of custom bodies, for bindings that cannot pass their functions. */
-SPRING_INLINE bool is_custom(spring_shape shape)
+static inline bool is_custom(spring_shape shape)
 {
 #ifdef SPRING_NO_CUSTOM
     (void)shape;
