@@ -693,7 +693,7 @@ SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
         single |= (r->candidate[k] & (r->candidate[k] - 1)) == 0 ? r->candidate[k] : 0;
     for (unsigned c = 0; c < r->setting->count; c++) {
         const contact_body *const b = &r->setting->body[c];
-        if ((single >> c & 1) == 0 || b->slips || b->shape == SPRING_CUSTOM)
+        if ((single >> c & 1) == 0 || b->slips || is_custom(b->shape))
             continue;
         for (size_t k = 0; k < r->count;) {
             if (r->candidate[k] != UINT32_C(1) << c) {

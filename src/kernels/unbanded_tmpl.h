@@ -28,11 +28,13 @@ SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
     return l->stiffness[j] > 0 || (damped && l->damping[j] > 0);
 }
 
-/* Compact kernels do not have a copy of the loops for each number of axes. clang warns of such a loop. */
-#if SPRING_COMPACT
+/* Compact kernels and WebAssembly do not have a copy of the loops for each number of axes. clang warns of such a loop. */
+#if SPRING_COMPACT || defined(__wasm__)
+#define COPY_PER_AXES 0
 #define UNROLL_AXES
 #else
-#define UNROLL_AXES SPRING_UNROLL
+#define COPY_PER_AXES 1
+#define UNROLL_AXES   SPRING_UNROLL
 #endif
 
 /* Quantities have an array for each axis. */
@@ -344,10 +346,11 @@ static void compute_unbanded_forces(const scene_links *s, const scalar *x, const
         all_unbanded_freezing(s, x, v, out);
     else if (s->terms == DAMPING_TERM)
         all_unbanded_damping(s, x, v, out, s->axes);
-    else if (SPRING_COMPACT)
+    else if (!COPY_PER_AXES)
         all_unbanded(s, x, v, out, s->axes, damped);
     else
         SPRING_BY_AXES(s->axes, damped, all_unbanded, s, x, v, out);
 }
+#undef COPY_PER_AXES
 
 #endif

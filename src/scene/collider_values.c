@@ -26,7 +26,7 @@ static double dot_of(const double a[3], const double b[3], uint32_t axes)
 static uint32_t axes_of_shape(const spring_collider *c, uint32_t axes)
 {
     bool given = c->shape == SPRING_BOX;
-    for (uint32_t i = 0; i < axes && c->shape == SPRING_CUSTOM; i++)
+    for (uint32_t i = 0; i < axes && is_custom(c->shape); i++)
         for (uint32_t a = 0; a < axes; a++)
             given = given || c->axis[i][a] != 0;
     return c->shape == SPRING_PLANE ? 1 : given ? axes : 0;
@@ -75,8 +75,7 @@ static bool fits_angles(size_t precision, const double v[3], uint32_t axes)
 const char *spring_collider_invalid_field(const spring_collider *c, size_t precision, double radius, uint32_t axes)
 {
     const double tolerance = 1e-3; /* of axes; products of many matrices of floats have errors of 1e-6 */
-    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE,
-               custom = c->shape == SPRING_CUSTOM;
+    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE, custom = is_custom(c->shape);
     if (!plane && !capsule && !custom && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
         return "shape";
     if (!fits3(precision, c->at, axes))
@@ -193,9 +192,9 @@ bool spring_state_colliders_valid(const spring_collider *own, uint32_t set, size
     bool valid = true;
     for (size_t i = 0; i < count && valid; i++) {
         const spring_collider c = moved_collider(own, set, i, state, true);
-        const bool custom = i < set && own[i].shape == SPRING_CUSTOM;
+        const bool custom = i < set && is_custom(own[i].shape);
         const uint32_t shape = (uint32_t)word_at(state + i * collider_words * word_bytes);
-        valid = shape <= SPRING_CUSTOM && (c.shape == SPRING_CUSTOM) == custom &&
+        valid = shape <= SPRING_CUSTOM && is_custom(c.shape) == custom &&
                 spring_collider_invalid_field(&c, precision, radius, axes) == NULL;
     }
     return valid;

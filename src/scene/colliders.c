@@ -29,7 +29,7 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
 {
     const double rounding = 64 * (double)SCALAR_EPSILON * (b->size + (double)largest_radius);
     collider_bound *const to = &bounds->each[k];
-    to->shape = b->shape == SPRING_CUSTOM ? SPRING_SPHERE : b->shape;
+    to->shape = is_custom(b->shape) ? SPRING_SPHERE : b->shape;
     copy3(to->at, b->start.at);
     copy3(to->shift, (vector3){b->end.at.x - b->start.at.x, b->end.at.y - b->start.at.y, b->end.at.z - b->start.at.z});
     for (int i = 0; i < 3; i++) {

@@ -242,7 +242,7 @@ static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
     for (int i = 0; i < 3; i++)
         axis[i] = (vector3){i == 0, i == 1, i == 2};
     bool given = c->shape == SPRING_BOX;
-    for (int i = 0; i < 3 && c->shape == SPRING_CUSTOM; i++)
+    for (int i = 0; i < 3 && is_custom(c->shape); i++)
         given = given || !is_zero(vector_of(c->axis[i], flat));
     for (int i = 0; i < (flat ? 2 : 3) && given; i++)
         axis[i] = vector_of(c->axis[i], flat);
@@ -314,8 +314,7 @@ static void bound_with_box(contact_body *b, double margin)
 static void find_bounds(contact_body *b, double angle, double custom_bound)
 {
     const double infinite = (double)INFINITY, shift = length3(subtract(b->end.at, b->start.at));
-    const double radius =
-        b->shape == SPRING_CUSTOM ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
+    const double radius = is_custom(b->shape) ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
     double stretch = 0;
     if (b->shape == SPRING_CAPSULE)
         stretch = length3(subtract(b->end.segment, b->start.segment));
@@ -329,7 +328,7 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
 static double size_at(const contact_body *b, const body_pose *pose)
 {
     double size =
-        largest_of(pose->at) + b->radius + largest_of(pose->segment) + (b->shape == SPRING_CUSTOM ? b->thickness : 0);
+        largest_of(pose->at) + b->radius + largest_of(pose->segment) + (is_custom(b->shape) ? b->thickness : 0);
     for (int a = 0; a < (b->flat ? 2 : 3) && b->shape == SPRING_BOX; a++)
         size += b->half[a];
     return size;
@@ -470,6 +469,8 @@ SPRING_NOINLINE void find_nearest_to(contact_particle *p, const contact_body *b,
         find_box(out, b, y, radius);
         break;
     case SPRING_CUSTOM: {
+        if (!is_custom(b->shape))
+            break;
         near_point all[3];
         const unsigned count = find_custom(p, b, y, all);
         *out = all[0];
@@ -499,7 +500,7 @@ static unsigned find_all(contact_particle *p, const contact_body *b, const body_
     }
     const vector3 y = place_in(pose, x);
     unsigned count = 1;
-    if (b->shape == SPRING_CUSTOM)
+    if (is_custom(b->shape))
         count = find_custom(p, b, y, out);
     else
         find_nearest(p, b, 0, y, out);
@@ -779,7 +780,7 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     find_nearest(p, b, 0, m->start, &m->at);
     m->push = m->at.gap < -m->slop ? -m->at.gap : 0;
     m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
-    const bool custom = b->shape == SPRING_CUSTOM, enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
+    const bool custom = is_custom(b->shape), enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
     if (custom && m->push == 0 && !enters ? !find_custom_impact(p, m) : !custom && !find_convex_impact(p, m))
         return false;
     if (m->gap < m->slop)
@@ -841,7 +842,7 @@ SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x,
     if (b->shape == SPRING_PLANE && !b->turns)
         return true;
     const double duration = fabs(m->left);
-    const bool custom = b->shape == SPRING_CUSTOM;
+    const bool custom = is_custom(b->shape);
     const int most = m->walks ? 0 : custom ? custom_iterations : last_pass ? surface_iterations : 1;
     double last_gap = 0, last = 0;
     for (int i = 0; i < most; i++) {
@@ -1014,7 +1015,7 @@ static int collide(const contact_setting *s, contact_particle *p, const meeting 
     vector3 w;
     put(&w, p->w);
     int found = collide_once(s, p, m);
-    if (m->b->shape == SPRING_CUSTOM) {
+    if (is_custom(m->b->shape)) {
         walk(s, p, m);
         found = CONTACT;
     }

@@ -15,6 +15,17 @@ enum { most_colliders = 32 }; /* bits of a mask */
 /* Factors of the bounds that kernels/contact_near_tmpl.h uses: of the reach of a collider, and of a displacement. */
 static const double reach_of_box = 1.04, way_of_box = 4.2;
 
+/* SPRING_NO_CUSTOM omits the code of custom bodies, for bindings that cannot pass their functions. */
+static inline bool is_custom(spring_shape shape)
+{
+#ifdef SPRING_NO_CUSTOM
+    (void)shape;
+    return false;
+#else
+    return shape == SPRING_CUSTOM;
+#endif
+}
+
 typedef struct vector3 {
     double x, y, z; /* with two axes z is 0 */
 } vector3;
