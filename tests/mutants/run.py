@@ -49,10 +49,14 @@ __attribute__((weak, constructor)) void spring_mutant_read(void)
 """
 
 
+# What a test program prints when a check fails, or at the end of a test in which one did.
+FAILED = re.compile(r"# \S*/(?=\w+\.[ch]:\d+: )|not ok \d+ - ")
+
+
 class Mutant(NamedTuple):
     name: str
     file: str
-    test: str  # that must fail
+    test: str  # that must fail, or "test: case"
     start: int  # of the old text
     end: int
     new: str
@@ -63,11 +67,11 @@ class Mutant(NamedTuple):
 
 
 class Program(NamedTuple):
-    name: str
     command: list
     targets: list  # for ninja
     tap: bool
-    limit: int  # [s] of processor time
+    env: dict
+    limit: int = 600  # [s] of processor time
 
 
 class BuildFailed(Exception):
@@ -109,11 +113,11 @@ def failure_of(program, build, number=0):
     limited = ["sh", "-c", f'ulimit -t {program.limit} && exec "$@"', "sh", *program.command]
     with subprocess.Popen(limited, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,
-                          env=os.environ | {"SPRING_MUTANT": str(number)}) as process:
+                          env=os.environ | program.env | {"SPRING_MUTANT": str(number)}) as process:
         for line in process.stdout:
-            if program.tap and line.startswith("not ok"):
+            if program.tap and FAILED.match(line):
                 os.killpg(process.pid, signal.SIGKILL)
-                return line.strip().partition(" - ")[2]
+                return FAILED.sub("", line).strip()
             points += line.startswith("ok ")
             if line.startswith("1.."):
                 plan = int(line[3:].split()[0])
@@ -121,7 +125,7 @@ def failure_of(program, build, number=0):
         return "time limit"
     if process.returncode != 0:
         return f"status {process.returncode}"
-    return "no complete plan" if program.tap and points != plan else ""
+    return "no complete plan" if program.tap and points != (plan or None) else ""
 
 
 def compile_targets(build, programs):
@@ -132,8 +136,8 @@ def compile_targets(build, programs):
         raise BuildFailed(done.stdout)
 
 
-def configured(tree):
-    """The build folder of a tree, and its tests that are C programs."""
+def configured(tree, tests):
+    """The build folder of a tree, and the programs of these tests."""
     build = tree / "build"
     (tree / "switch.h").write_text(SWITCH, encoding="utf-8")
     done = subprocess.run(["meson", "setup", str(build), str(tree), *OPTIONS, f"-Dc_args={FLAGS.format(tree)}"],
@@ -145,27 +149,30 @@ def configured(tree):
         return json.loads(subprocess.check_output(["meson", "introspect", f"--{what}", str(build)], text=True))
 
     built = {output for target in introspect("targets") for output in target["filename"]}
-    programs = []
-    for test in introspect("tests"):
-        if test["cmd"][0] in built:
-            targets = [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in built]
-            programs.append(Program(test["name"], test["cmd"], targets, test["protocol"] == "tap", 600))
+    how = {test["name"]: test for test in introspect("tests") if test["cmd"][0] in built}
+    programs = {}
+    for name in tests:
+        test, _, case = name.partition(": ")
+        if test not in how:
+            sys.exit(f"mutants.tsv: no such test: {test}")
+        command = how[test]["cmd"]
+        targets = [os.path.relpath(build / word, build) for word in command if str(build / word) in built]
+        programs[name] = Program(command, targets, how[test]["protocol"] == "tap", {"SPRING_CASE": case} if case else {})
     return build, programs
 
 
-def passing(programs, build):
-    """The programs, the fastest first, with limits from their time. Each must pass without a mutant."""
+def with_limits(programs, build):
+    """The programs, with limits from their time. Each must pass without a mutant."""
 
-    def timed(program):
+    def timed(name):
         start = time.monotonic()
-        failure = failure_of(program, build)
+        failure = failure_of(programs[name], build)
         if failure:
-            sys.exit(f"run.py: {program.name} fails without a mutant: {failure}")
-        duration = time.monotonic() - start
-        return duration, program._replace(limit=5 + round(2 * duration))
+            sys.exit(f"run.py: {name} fails without a mutant: {failure}")
+        return programs[name]._replace(limit=5 + round(2 * (time.monotonic() - start)))
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        return [program for _, program in sorted(pool.map(timed, programs))]
+        return dict(zip(programs, pool.map(timed, programs)))
 
 
 # ----------------------------------------------------------------------------------------------------------- a build
@@ -191,23 +198,14 @@ def write_switches(tree, mutants):
                                  encoding="utf-8")
 
 
-def killer(mutant, number, programs, build):
-    for program in programs:
-        if mutant.test == program.name:
-            failure = failure_of(program, build, number)
-            if failure:
-                return f"{program.name}: {failure}"
-    return ""
-
-
-def killers(mutants, tree, build, programs):
-    """What notices each mutant, in their order; "" for those that nothing does."""
+def failures(mutants, tree, build, programs):
+    """What fails with each mutant, in their order; "" for those with which nothing does."""
     switched = {i: mutant for i, mutant in enumerate(mutants, 1) if mutant.body}
     write_switches(tree, switched)
-    compile_targets(build, programs)
-    programs = passing(programs, build)
+    compile_targets(build, programs.values())
+    programs = with_limits(programs, build)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i: killer(switched[i], i, programs, build), switched))
+        found = list(pool.map(lambda i: failure_of(programs[switched[i].test], build, i), switched))
     found = dict(zip(switched, found))
     for i, mutant in enumerate(mutants, 1):
         if not mutant.body:
@@ -215,30 +213,24 @@ def killers(mutants, tree, build, programs):
             kept = path.read_text(encoding="utf-8")
             path.write_text(mutant.apply((ROOT / mutant.file).read_text(encoding="utf-8")), encoding="utf-8")
             try:
-                needed = [program for program in programs if mutant.test == program.name]
-                compile_targets(build, needed)
-                found[i] = killer(mutant, 0, needed, build)
+                compile_targets(build, [programs[mutant.test]])
+                found[i] = failure_of(programs[mutant.test], build)
             finally:
                 path.write_text(kept, encoding="utf-8")
     return [found[i] for i in range(1, len(mutants) + 1)]
 
 
 def check_all(mutants, tree):
-    build, programs = configured(tree)
-    unknown = {mutant.test for mutant in mutants} - {program.name for program in programs}
-    if unknown:
-        sys.exit(f"mutants.tsv: no such test: {', '.join(sorted(unknown))}")
-    named = {mutant.test for mutant in mutants}
+    build, programs = configured(tree, {mutant.test for mutant in mutants})
     failed = 0
-    wanted = [program for program in programs if program.name in named]
     try:
-        found = killers(mutants, tree, build, wanted)
+        found = failures(mutants, tree, build, programs)
     except BuildFailed as error:
         print(f"{error}\nmutants.tsv: a mistake does not compile")
         found = [""] * len(mutants)
-    for mutant, by in zip(mutants, found):
-        print(f"{mutant.name}\t{by or 'SURVIVES ' + mutant.test}", flush=True)
-        failed += not by
+    for mutant, failure in zip(mutants, found):
+        print(f"{mutant.name}\t{mutant.test}: {failure or 'PASSES'}", flush=True)
+        failed += not failure
     print(f"{len(mutants) - failed} passed, {failed} failed, 0 skipped")
     return 1 if failed else 0
 
