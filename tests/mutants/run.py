@@ -3,10 +3,11 @@
 """Checks that the test suite notices mistakes: makes each of them in a copy of the tree and runs the C tests.
 
 usage: run.py [PATTERN]...
-       run.py --texts   checks only that each text to be changed occurs once in its file
+       run.py --texts   checks only that each text to be changed occurs once in its file, and that all changes compile
 
 Makes the mistakes of mutants.tsv, or those whose name or file contains a PATTERN. Each must make the test that its row
-names fail. Status 1 if one does not. The last line is "N passed, N failed, N skipped".
+names fail, or the case of the test, which then runs alone. Status 1 if one does not. The last line is "N passed, N failed,
+N skipped".
 
 Compiling takes longer than running. So the changed bodies of a function are compiled together with the original one, as
 cases of a switch over the environment variable SPRING_MUTANT. A change outside of functions is compiled by itself.
@@ -179,15 +180,19 @@ def with_limits(programs, build):
 
 
 def with_switches(text, mutants):
-    """The text of a file, with all bodies of each function that is changed; mutants: by the number that selects them."""
-    for start, end in sorted({mutant.body for mutant in mutants.values()}, reverse=True):
+    """The text of a file, with all bodies of each function that is changed; mutants: by the number that selects them. Changes
+    outside of functions are made for good. The compiler names the row in which it finds an error."""
+    edits = [(mutant.start, mutant.end, mutant.new) for mutant in mutants.values() if not mutant.body]
+    for start, end in {mutant.body for mutant in mutants.values() if mutant.body}:
         cases = ""
         for number, mutant in mutants.items():
             if mutant.body == (start, end):
                 longer = len(mutant.new) - (mutant.end - mutant.start)
-                cases += f"case {number}: {{\n{mutant.apply(text)[start : end + longer]}\nbreak; }}\n"
-        text = (f"{text[:start]}{{ switch (spring_mutant) {{\n{cases}default: {{\n{text[start:end]}\nbreak; }} }} }}"
-                f"{text[end:]}")
+                cases += (f'case {number}: {{\n#line 1 "mutants.tsv: {mutant.name}"\n'
+                          f"{mutant.apply(text)[start : end + longer]}\nbreak; }}\n")
+        edits.append((start, end, f"{{ switch (spring_mutant) {{\n{cases}default: {{\n{text[start:end]}\nbreak; }} }} }}"))
+    for start, end, new in sorted(edits, reverse=True):
+        text = text[:start] + new + text[end:]
     return text
 
 
@@ -220,6 +225,30 @@ def failures(mutants, tree, build, programs):
     return [found[i] for i in range(1, len(mutants) + 1)]
 
 
+def check_texts():
+    """Each text occurs once in its file, and all changes compile, together."""
+    mutants = list(written_by_hand([]))
+    print("1..2\nok 1 - each text to be changed occurs once")
+    with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
+        tree = pathlib.Path(scratch)
+        for folder in ("include", "src", "tests", "tools"):
+            shutil.copytree(ROOT / folder, tree / folder, ignore=shutil.ignore_patterns("node_modules"))
+        (tree / "switch.h").write_text(SWITCH, encoding="utf-8")
+        write_switches(tree, dict(enumerate(mutants, 1)))
+        sources = {*tree.glob("src/*/*.c"), *(tree / mutant.file for mutant in mutants if mutant.file.endswith(".c"))}
+        command = [*os.environ.get("CC", "cc").split(), "-std=c11", "-fsyntax-only", *FLAGS.format(tree).split(),
+                   *(f"-I{tree / folder}" for folder in ("include", "src", "tests", "tools"))]
+
+        def errors(source):
+            done = subprocess.run([*command, source], capture_output=True, text=True, check=False)
+            return done.stderr if done.returncode != 0 else ""
+
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            found = "".join(pool.map(errors, sorted(sources)))
+    print(re.sub("^", "# ", found.rstrip(), flags=re.M) + "\nnot ok" if found else "ok", "2 - all changes compile")
+    return 1 if found else 0
+
+
 def check_all(mutants, tree):
     build, programs = configured(tree, {mutant.test for mutant in mutants})
     failed = 0
@@ -238,9 +267,7 @@ def check_all(mutants, tree):
 def main():
     patterns = sys.argv[1:]
     if patterns == ["--texts"]:
-        list(written_by_hand([]))
-        print("1..1\nok 1 - each text to be changed occurs once")
-        return 0
+        return check_texts()
     if any(pattern.startswith("-") for pattern in patterns):
         print(__doc__)
         return 0 if patterns == ["--help"] else 2
