@@ -104,7 +104,6 @@ static void on_complete(const CU_pTest case_done, const CU_pSuite suite, const C
     printf(skipped != NULL ? " # SKIP %s\n" : "\n", skipped);
     if (closest > 0)
         printf("# largest error %.3g of its bound\n", closest);
-    fflush(stdout);
 }
 
 int run_tests(const char *suite, const test *tests, size_t count)
@@ -115,12 +114,15 @@ int run_tests(const char *suite, const test *tests, size_t count)
     if (CU_initialize_registry() != CUE_SUCCESS)
         return EXIT_FAILURE;
     const CU_pSuite cunit_suite = CU_add_suite(suite, NULL, NULL);
+    const char *const only = getenv("SPRING_CASE"); /* runs one test alone */
     for (size_t i = 0; cunit_suite != NULL && i < count; i++)
-        if (CU_add_test(cunit_suite, tests[i].name, tests[i].run) == NULL)
+        if ((only == NULL || strcmp(only, tests[i].name) == 0) &&
+            CU_add_test(cunit_suite, tests[i].name, tests[i].run) == NULL)
             return EXIT_FAILURE;
     CU_set_test_start_handler(on_start);
     CU_set_test_complete_handler(on_complete);
-    printf("1..%zu\n# random numbers from seed %llu\n", count, (unsigned long long)seed);
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* a crash or an interruption loses no line */
+    printf("1..%u\n# random numbers from seed %llu\n", CU_get_registry()->uiNumberOfTests, (unsigned long long)seed);
     const CU_ErrorCode status = CU_run_all_tests();
     CU_cleanup_registry();
     return status == CUE_SUCCESS ? EXIT_SUCCESS : EXIT_FAILURE; /* failures are in the TAP */

@@ -3,10 +3,11 @@
 """Checks that the test suite notices mistakes: makes each of them in a copy of the tree and runs the C tests.
 
 usage: run.py [PATTERN]...
-       run.py --texts   checks only that each text to be changed occurs once in its file
+       run.py --texts   checks only that each text to be changed occurs once in its file, and that all changes compile
 
 Makes the mistakes of mutants.tsv, or those whose name or file contains a PATTERN. Each must make the test that its row
-names fail. Status 1 if one does not. The last line is "N passed, N failed, N skipped".
+names fail, or the case of the test, which then runs alone. Status 1 if one does not. The last line is "N passed, N failed,
+N skipped".
 
 Compiling takes longer than running. So the changed bodies of a function are compiled together with the original one, as
 cases of a switch over the environment variable SPRING_MUTANT. A change outside of functions is compiled by itself.
@@ -49,10 +50,14 @@ __attribute__((weak, constructor)) void spring_mutant_read(void)
 """
 
 
+# What a test program prints when a check fails, or at the end of a test in which one did.
+FAILED = re.compile(r"# \S*/(?=\w+\.[ch]:\d+: )|not ok \d+ - ")
+
+
 class Mutant(NamedTuple):
     name: str
     file: str
-    test: str  # that must fail
+    test: str  # that must fail, or "test: case"
     start: int  # of the old text
     end: int
     new: str
@@ -63,11 +68,11 @@ class Mutant(NamedTuple):
 
 
 class Program(NamedTuple):
-    name: str
     command: list
     targets: list  # for ninja
     tap: bool
-    limit: int  # [s] of processor time
+    env: dict
+    limit: int = 600  # [s] of processor time
 
 
 class BuildFailed(Exception):
@@ -109,11 +114,11 @@ def failure_of(program, build, number=0):
     limited = ["sh", "-c", f'ulimit -t {program.limit} && exec "$@"', "sh", *program.command]
     with subprocess.Popen(limited, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,
-                          env=os.environ | {"SPRING_MUTANT": str(number)}) as process:
+                          env=os.environ | program.env | {"SPRING_MUTANT": str(number)}) as process:
         for line in process.stdout:
-            if program.tap and line.startswith("not ok"):
+            if program.tap and FAILED.match(line):
                 os.killpg(process.pid, signal.SIGKILL)
-                return line.strip().partition(" - ")[2]
+                return FAILED.sub("", line).strip()
             points += line.startswith("ok ")
             if line.startswith("1.."):
                 plan = int(line[3:].split()[0])
@@ -121,7 +126,7 @@ def failure_of(program, build, number=0):
         return "time limit"
     if process.returncode != 0:
         return f"status {process.returncode}"
-    return "no complete plan" if program.tap and points != plan else ""
+    return "no complete plan" if program.tap and points != (plan or None) else ""
 
 
 def compile_targets(build, programs):
@@ -132,8 +137,8 @@ def compile_targets(build, programs):
         raise BuildFailed(done.stdout)
 
 
-def configured(tree):
-    """The build folder of a tree, and its tests that are C programs."""
+def configured(tree, tests):
+    """The build folder of a tree, and the programs of these tests."""
     build = tree / "build"
     (tree / "switch.h").write_text(SWITCH, encoding="utf-8")
     done = subprocess.run(["meson", "setup", str(build), str(tree), *OPTIONS, f"-Dc_args={FLAGS.format(tree)}"],
@@ -145,42 +150,49 @@ def configured(tree):
         return json.loads(subprocess.check_output(["meson", "introspect", f"--{what}", str(build)], text=True))
 
     built = {output for target in introspect("targets") for output in target["filename"]}
-    programs = []
-    for test in introspect("tests"):
-        if test["cmd"][0] in built:
-            targets = [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in built]
-            programs.append(Program(test["name"], test["cmd"], targets, test["protocol"] == "tap", 600))
+    how = {test["name"]: test for test in introspect("tests") if test["cmd"][0] in built}
+    programs = {}
+    for name in tests:
+        test, _, case = name.partition(": ")
+        if test not in how:
+            sys.exit(f"mutants.tsv: no such test: {test}")
+        command = how[test]["cmd"]
+        targets = [os.path.relpath(build / word, build) for word in command if str(build / word) in built]
+        programs[name] = Program(command, targets, how[test]["protocol"] == "tap", {"SPRING_CASE": case} if case else {})
     return build, programs
 
 
-def passing(programs, build):
-    """The programs, the fastest first, with limits from their time. Each must pass without a mutant."""
+def with_limits(programs, build):
+    """The programs, with limits from their time. Each must pass without a mutant."""
 
-    def timed(program):
+    def timed(name):
         start = time.monotonic()
-        failure = failure_of(program, build)
+        failure = failure_of(programs[name], build)
         if failure:
-            sys.exit(f"run.py: {program.name} fails without a mutant: {failure}")
-        duration = time.monotonic() - start
-        return duration, program._replace(limit=5 + round(2 * duration))
+            sys.exit(f"run.py: {name} fails without a mutant: {failure}")
+        return programs[name]._replace(limit=5 + round(2 * (time.monotonic() - start)))
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        return [program for _, program in sorted(pool.map(timed, programs))]
+        return dict(zip(programs, pool.map(timed, programs)))
 
 
 # ----------------------------------------------------------------------------------------------------------- a build
 
 
 def with_switches(text, mutants):
-    """The text of a file, with all bodies of each function that is changed; mutants: by the number that selects them."""
-    for start, end in sorted({mutant.body for mutant in mutants.values()}, reverse=True):
+    """The text of a file, with all bodies of each function that is changed; mutants: by the number that selects them. Changes
+    outside of functions are made for good. The compiler names the row in which it finds an error."""
+    edits = [(mutant.start, mutant.end, mutant.new) for mutant in mutants.values() if not mutant.body]
+    for start, end in {mutant.body for mutant in mutants.values() if mutant.body}:
         cases = ""
         for number, mutant in mutants.items():
             if mutant.body == (start, end):
                 longer = len(mutant.new) - (mutant.end - mutant.start)
-                cases += f"case {number}: {{\n{mutant.apply(text)[start : end + longer]}\nbreak; }}\n"
-        text = (f"{text[:start]}{{ switch (spring_mutant) {{\n{cases}default: {{\n{text[start:end]}\nbreak; }} }} }}"
-                f"{text[end:]}")
+                cases += (f'case {number}: {{\n#line 1 "mutants.tsv: {mutant.name}"\n'
+                          f"{mutant.apply(text)[start : end + longer]}\nbreak; }}\n")
+        edits.append((start, end, f"{{ switch (spring_mutant) {{\n{cases}default: {{\n{text[start:end]}\nbreak; }} }} }}"))
+    for start, end, new in sorted(edits, reverse=True):
+        text = text[:start] + new + text[end:]
     return text
 
 
@@ -191,23 +203,14 @@ def write_switches(tree, mutants):
                                  encoding="utf-8")
 
 
-def killer(mutant, number, programs, build):
-    for program in programs:
-        if mutant.test == program.name:
-            failure = failure_of(program, build, number)
-            if failure:
-                return f"{program.name}: {failure}"
-    return ""
-
-
-def killers(mutants, tree, build, programs):
-    """What notices each mutant, in their order; "" for those that nothing does."""
+def failures(mutants, tree, build, programs):
+    """What fails with each mutant, in their order; "" for those with which nothing does."""
     switched = {i: mutant for i, mutant in enumerate(mutants, 1) if mutant.body}
     write_switches(tree, switched)
-    compile_targets(build, programs)
-    programs = passing(programs, build)
+    compile_targets(build, programs.values())
+    programs = with_limits(programs, build)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda i: killer(switched[i], i, programs, build), switched))
+        found = list(pool.map(lambda i: failure_of(programs[switched[i].test], build, i), switched))
     found = dict(zip(switched, found))
     for i, mutant in enumerate(mutants, 1):
         if not mutant.body:
@@ -215,30 +218,48 @@ def killers(mutants, tree, build, programs):
             kept = path.read_text(encoding="utf-8")
             path.write_text(mutant.apply((ROOT / mutant.file).read_text(encoding="utf-8")), encoding="utf-8")
             try:
-                needed = [program for program in programs if mutant.test == program.name]
-                compile_targets(build, needed)
-                found[i] = killer(mutant, 0, needed, build)
+                compile_targets(build, [programs[mutant.test]])
+                found[i] = failure_of(programs[mutant.test], build)
             finally:
                 path.write_text(kept, encoding="utf-8")
     return [found[i] for i in range(1, len(mutants) + 1)]
 
 
+def check_texts():
+    """Each text occurs once in its file, and all changes compile, together."""
+    mutants = list(written_by_hand([]))
+    print("1..2\nok 1 - each text to be changed occurs once")
+    with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
+        tree = pathlib.Path(scratch)
+        for folder in ("include", "src", "tests", "tools"):
+            shutil.copytree(ROOT / folder, tree / folder, ignore=shutil.ignore_patterns("node_modules"))
+        (tree / "switch.h").write_text(SWITCH, encoding="utf-8")
+        write_switches(tree, dict(enumerate(mutants, 1)))
+        sources = {*tree.glob("src/*/*.c"), *(tree / mutant.file for mutant in mutants if mutant.file.endswith(".c"))}
+        command = [*os.environ.get("CC", "cc").split(), "-std=c11", "-fsyntax-only", *FLAGS.format(tree).split(),
+                   *(f"-I{tree / folder}" for folder in ("include", "src", "tests", "tools"))]
+
+        def errors(source):
+            done = subprocess.run([*command, source], capture_output=True, text=True, check=False)
+            return done.stderr if done.returncode != 0 else ""
+
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            found = "".join(pool.map(errors, sorted(sources)))
+    print(re.sub("^", "# ", found.rstrip(), flags=re.M) + "\nnot ok" if found else "ok", "2 - all changes compile")
+    return 1 if found else 0
+
+
 def check_all(mutants, tree):
-    build, programs = configured(tree)
-    unknown = {mutant.test for mutant in mutants} - {program.name for program in programs}
-    if unknown:
-        sys.exit(f"mutants.tsv: no such test: {', '.join(sorted(unknown))}")
-    named = {mutant.test for mutant in mutants}
+    build, programs = configured(tree, {mutant.test for mutant in mutants})
     failed = 0
-    wanted = [program for program in programs if program.name in named]
     try:
-        found = killers(mutants, tree, build, wanted)
+        found = failures(mutants, tree, build, programs)
     except BuildFailed as error:
         print(f"{error}\nmutants.tsv: a mistake does not compile")
         found = [""] * len(mutants)
-    for mutant, by in zip(mutants, found):
-        print(f"{mutant.name}\t{by or 'SURVIVES ' + mutant.test}", flush=True)
-        failed += not by
+    for mutant, failure in zip(mutants, found):
+        print(f"{mutant.name}\t{mutant.test}: {failure or 'PASSES'}", flush=True)
+        failed += not failure
     print(f"{len(mutants) - failed} passed, {failed} failed, 0 skipped")
     return 1 if failed else 0
 
@@ -246,9 +267,7 @@ def check_all(mutants, tree):
 def main():
     patterns = sys.argv[1:]
     if patterns == ["--texts"]:
-        list(written_by_hand([]))
-        print("1..1\nok 1 - each text to be changed occurs once")
-        return 0
+        return check_texts()
     if any(pattern.startswith("-") for pattern in patterns):
         print(__doc__)
         return 0 if patterns == ["--help"] else 2
