@@ -63,14 +63,13 @@ typedef struct unbanded_links {
    This equals the sum of weight[i] x[particle[i]] since the sum of the weights is 0, and a translation adds no rounding
    error. */
 typedef struct stored_weighted {
-    uint32_t particle[4]; /* first the particle with the largest weight */
-    uint32_t slot;        /* among the slots of all bands; no_slot: it cannot be in a band */
-    uint8_t points;       /* number of particles; 0: none */
-    uint8_t place[4];     /* index of each particle in spring_weighted_link */
-    bool banded;          /* a band computes its forces */
-    scalar weight[4];
-    scalar stiffness, rest, damping;
-    scalar root, direction_scale, turning; /* as in scene_band */
+    uint32_t particle[4];                       /* first the particle with the largest weight */
+    uint32_t slot;                              /* among the slots of all bands; no_slot: it cannot be in a band */
+    uint8_t points;                             /* number of particles; 0: none */
+    uint8_t place[4];                           /* index of each particle in spring_weighted_link */
+    bool banded;                                /* a band computes its forces */
+    scalar weight[4], rest, stiffness, damping; /* also in a saved state */
+    scalar root, direction_scale, turning;      /* as in scene_band */
 } stored_weighted;
 
 /* Whether a weighted link has a force that no band computes. */

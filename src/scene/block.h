@@ -51,6 +51,7 @@ struct spring_scene {
     double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links, isotropic_links; /* isotropic: on two or three axes, damped and of rest length 0 */
+    uint64_t damped_weighted;               /* weighted links among the damped ones */
     size_t loose;                           /* weighted links that are in no band now */
     size_t nonlinear;                       /* weighted links with a rest length, on two or three axes */
     uint64_t ends;                          /* a number for the ends of the links, see layout.c */

@@ -23,22 +23,22 @@ typedef enum scene_array {
     ARRAY_V_0, /* [m/s] velocities */
     ARRAY_X_1,
     ARRAY_V_1,
-    ARRAY_FORCE_0,        /* [N] forces at the state in buffer 0 */
-    ARRAY_FORCE_1,        /* [N] at the state in buffer 1; ARRAY_FORCE_0 if no forces depend on a predicted velocity */
-    ARRAY_PREDICTED,      /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
-    ARRAY_STAGES,         /* quantities that Runge-Kutta methods store */
-    ARRAY_INVERSE_MASS,   /* [1/kg] 0: pinned */
-    ARRAY_FREE_MASS,      /* [1/kg] inverse mass of a particle when it is not pinned; 0: its mass is not valid */
-    ARRAY_MASS_FACTORS,   /* numbers that RKN8 and SRKN6 store for each mass, with drag */
-    ARRAY_OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
-    ARRAY_RINGS,          /* [N] bands: ring buffers of forces; see kernels/bands_tmpl.h */
-    ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
-    ARRAY_BAND_REST,      /* [m] */
-    ARRAY_BAND_DAMPING,   /* [N s/m] */
-    ARRAY_LINK_A,         /* unbanded links: particles at the ends */
+    ARRAY_FORCE_0,      /* [N] forces at the state in buffer 0 */
+    ARRAY_FORCE_1,      /* [N] at the state in buffer 1; ARRAY_FORCE_0 if no forces depend on a predicted velocity */
+    ARRAY_PREDICTED,    /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
+    ARRAY_STAGES,       /* quantities that Runge-Kutta methods store */
+    ARRAY_INVERSE_MASS, /* [1/kg] 0: pinned */
+    ARRAY_FREE_MASS,    /* [1/kg] inverse mass of a particle when it is not pinned; 0: its mass is not valid */
+    ARRAY_MASS_FACTORS, /* numbers that RKN8 and SRKN6 store for each mass, with drag */
+    ARRAY_OCCUPIED,     /* bands: by slot, -1 where a link acts, else 0 */
+    ARRAY_RINGS,        /* [N] bands: ring buffers of forces; see kernels/bands_tmpl.h */
+    ARRAY_LINK_A,       /* unbanded links: particles at the ends */
     ARRAY_LINK_B,
-    ARRAY_LINK_STIFFNESS, /* [N/m] */
+    ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
+    ARRAY_LINK_STIFFNESS, /* [N/m] unbanded links; follows so that slots of an editable scene are an index for both */
+    ARRAY_BAND_REST,      /* [m] */
     ARRAY_LINK_REST,      /* [m] */
+    ARRAY_BAND_DAMPING,   /* [N s/m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
     ARRAY_FLAGS,          /* by link: spring_link.flags; only if one is not 0 */
     ARRAY_TETHERS,        /* tether */

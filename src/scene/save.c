@@ -41,13 +41,12 @@ _Static_assert(sizeof(state_header) == header_words * word_bytes, "a header cons
 static uint64_t count_damped(const spring_scene *s)
 {
     uint64_t count = s->damped_links;
+    if (!scene_is_editable(s))
+        return count;
     const tether *const tethers = scene_read(s, ARRAY_TETHERS);
-    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
-    for (size_t i = 0; i < s->layout.weighted && scene_is_editable(s); i++)
-        count -= weighted[i].damping > 0;
-    for (size_t i = 0; i < s->layout.tethers && scene_is_editable(s); i++)
+    for (size_t i = 0; i < s->layout.tethers; i++)
         count += tethers[i].damping > 0 && !(scene_link(s, tethers[i].link).damping > 0);
-    return count;
+    return count - s->damped_weighted;
 }
 
 static uint64_t state_magic(void)
@@ -195,38 +194,35 @@ static void move_pins(spring_scene *s, const section *row, uint8_t *state, bool 
 
 /* Coefficients of the links of an editable scene, in the order of their indices. The scene has them by slot. */
 
-typedef struct coefficient_slots {
-    const uint32_t *slots; /* NULL: there are no bands, and each link has the slot of its index */
-    size_t band_slots;
-    size_t banded, unbanded; /* [bytes] from the start of the block to where slot 0 would be */
-} coefficient_slots;
-
-static coefficient_slots coefficients_of(const spring_scene *s, scene_array array)
+/* array: ARRAY_BAND_..., which ARRAY_LINK_... follows. The result is that of slot 0. */
+static scalar *coefficients_of(spring_scene *s, scene_array array)
 {
-    const scene_array banded = (scene_array)(array - ARRAY_LINK_STIFFNESS + ARRAY_BAND_STIFFNESS);
-    const size_t slots = s->layout.band_slots;
-    return (coefficient_slots){scene_read(s, ARRAY_SLOTS), slots, s->layout.offset[banded],
-                               s->layout.offset[array] - slots * sizeof(scalar)};
+    return scene_memory(s, s->layout.bands > 0 ? array : (scene_array)(array + 1));
 }
 
-static inline scalar *coefficient_at(spring_scene *s, const coefficient_slots *c, size_t slot)
+SPRING_INLINE void move_by_slot(scalar *first, const uint32_t *slots, uint8_t *state, size_t count, bool load)
 {
-    void *const at = (char *)s + ((slot < c->band_slots ? c->banded : c->unbanded) + slot * sizeof(scalar));
-    return at;
+    enum { at_once = 4 };
+    size_t i = 0;
+    for (; i + at_once <= count; i += at_once) {
+        SPRING_UNROLL
+        for (size_t k = i; k < i + at_once; k++)
+            move_numbers(&first[slots[k]], state + k * sizeof(scalar), 1, sizeof(scalar), load);
+    }
+    for (; i < count; i++)
+        move_numbers(&first[slots[i]], state + i * sizeof(scalar), 1, sizeof(scalar), load);
 }
 
 static void move_coefficients(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const coefficient_slots c = coefficients_of(s, row->array);
-    if (c.slots == NULL) {
-        move_numbers(scene_memory(s, row->array), state, row->count, sizeof(scalar), load);
-    } else if (load) {
-        for (size_t i = 0; i < row->count; i++)
-            *coefficient_at(s, &c, c.slots[i]) = number_at(state, i);
-    } else {
-        for (size_t i = 0; i < row->count; i++)
-            copy_numbers(state + i * sizeof(scalar), coefficient_at(s, &c, c.slots[i]), 1, sizeof(scalar));
-    }
+    const uint32_t *const slots = scene_read(s, ARRAY_SLOTS); /* NULL: each link has the slot of its index */
+    scalar *const first = coefficients_of(s, row->array);
+    if (slots == NULL)
+        move_numbers(first, state, row->count, sizeof(scalar), load);
+    else if (load)
+        move_by_slot(first, slots, state, row->count, true);
+    else
+        move_by_slot(first, slots, state, row->count, false);
 }
 
 /* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored
@@ -234,18 +230,19 @@ static void move_coefficients(spring_scene *s, const section *row, uint8_t *stat
    sign. */
 static void move_rests(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const coefficient_slots c = coefficients_of(s, row->array);
+    const uint32_t *const slots = scene_read(s, ARRAY_SLOTS);
     const uint32_t *const a = scene_read(s, ARRAY_LINK_A), *const b = scene_read(s, ARRAY_LINK_B);
     const uint8_t *const flags = scene_read(s, ARRAY_FLAGS);
     const bool directed = s->layout.axes == 1, all = (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    const size_t band_slots = s->layout.band_slots;
+    scalar *const first = coefficients_of(s, row->array);
     move_coefficients(s, row, state, load);
     for (size_t i = 0; i < row->count && (directed ? a != NULL : all || flags != NULL); i++) {
-        const size_t slot = c.slots != NULL ? c.slots[i] : i, at = slot - c.band_slots;
-        scalar *const rest = coefficient_at(s, &c, slot);
-        if (directed ? slot < c.band_slots || a[at] < b[at] : !all && flags[i] == 0)
+        const size_t slot = slots != NULL ? slots[i] : i, at = slot - band_slots;
+        if (directed ? slot < band_slots || a[at] < b[at] : !all && flags[i] == 0)
             continue;
         if (load)
-            *rest = -*rest;
+            first[slot] = -first[slot];
         else
             state[(i + 1) * sizeof(scalar) - 1] ^= 0x80;
     }
@@ -254,15 +251,15 @@ static void move_rests(spring_scene *s, const section *row, uint8_t *state, bool
 /* Stiffness or damping. While a tether does not act, it has 0 where other links have their coefficients. */
 static void move_strengths(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
-    const coefficient_slots c = coefficients_of(s, row->array);
+    scalar *const first = coefficients_of(s, row->array);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
     move_coefficients(s, row, state, load);
     for (size_t i = 0; i < s->layout.tethers; i++) {
         const link_place at = scene_link_place(s, tethers[i].link);
-        scalar *const own = row->array == ARRAY_LINK_STIFFNESS ? &tethers[i].stiffness : &tethers[i].damping;
+        scalar *const own = row->array == ARRAY_BAND_STIFFNESS ? &tethers[i].stiffness : &tethers[i].damping;
         move_numbers(own, state + tethers[i].link * sizeof(scalar), 1, sizeof(scalar), load);
         if (load && (inverse_mass_at(s, at.a) == 0) == (inverse_mass_at(s, at.b) == 0))
-            *coefficient_at(s, &c, at.slot) = 0;
+            first[at.slot] = 0;
     }
 }
 
@@ -294,33 +291,31 @@ static bool dampings_valid(arriving *a, const section *row, uint8_t *state, bool
     return damped == a->header->damped && strengths_valid(a, row, state, fine);
 }
 
-/* Weighted links of an editable scene. */
+/* Weighted links of an editable scene. The weights are in the order of stored_weighted. */
 
 typedef struct weighted_numbers {
-    scalar weight[4], rest, stiffness, damping; /* as in spring_weighted_link */
+    scalar weight[4], rest, stiffness, damping; /* as in stored_weighted */
     scalar banded;                              /* 1 if a band computes it, otherwise 0 */
 } weighted_numbers;
 
 enum { weighted_count = sizeof(weighted_numbers) / sizeof(scalar) };
+_Static_assert(offsetof(stored_weighted, damping) - offsetof(stored_weighted, weight) ==
+                   offsetof(weighted_numbers, damping),
+               "the numbers except the last are moved together");
 
 static void move_weighted(spring_scene *s, const section *row, uint8_t *state, bool load)
 {
     stored_weighted *l = scene_memory(s, row->array);
     for (size_t i = 0; i < row->count; i++, l++, state += sizeof(weighted_numbers)) {
-        weighted_numbers n = {{0}, l->rest, l->stiffness, l->damping, l->banded};
-        for (int k = 0; k < l->points; k++)
-            n.weight[l->place[k]] = l->weight[k];
-        move_numbers(&n, state, weighted_count, sizeof(scalar), load);
+        scalar banded = l->banded;
+        move_numbers((char *)l + offsetof(stored_weighted, weight), state, weighted_count - 1, sizeof(scalar), load);
+        move_numbers(&banded, state + offsetof(weighted_numbers, banded), 1, sizeof(scalar), load);
         if (!load)
             continue;
-        for (int k = 0; k < l->points; k++)
-            l->weight[k] = n.weight[l->place[k]];
-        l->rest = n.rest;
-        l->stiffness = n.stiffness;
-        l->damping = n.damping;
-        l->banded = n.banded != 0;
+        l->banded = banded != 0;
         if (l->slot != no_slot)
             scene_fill_slot(s, l, l->slot);
+        scene_count_weighted(s, l, true);
     }
 }
 
@@ -330,8 +325,8 @@ static bool weighted_fits(const arriving *a, const stored_weighted *l, const wei
     spring_weighted_link link = {.stiffness = (double)n->stiffness, .damping = (double)n->damping};
     double inverse[4] = {0};
     for (int k = 0; k < l->points; k++) {
-        link.weight[l->place[k]] = (double)n->weight[l->place[k]];
-        inverse[l->place[k]] = n->weight[l->place[k]] != 0 ? arriving_inverse_mass(a, l->particle[k]) : 0;
+        link.weight[k] = (double)n->weight[k];
+        inverse[k] = n->weight[k] != 0 ? arriving_inverse_mass(a, l->particle[k]) : 0;
     }
     return spring_weighted_overflows(&link, sizeof(scalar), inverse) == NULL;
 }
@@ -343,57 +338,58 @@ static bool weighted_valid(arriving *a, const section *row, uint8_t *state, bool
     const stored_weighted *l = scene_read(a->s, row->array);
     for (size_t i = 0; i < row->count && fine; i++, l++, state += sizeof(weighted_numbers)) {
         weighted_numbers n;
-        scalar w[4] = {0}, largest = 0;
-        double sum = 0;
         copy_numbers(&n, state, weighted_count, sizeof(scalar));
-        for (int k = 0; k < l->points; k++) {
-            w[k] = n.weight[l->place[k]];
-            sum += (double)w[k];
-            largest = w[k] > largest ? w[k] : -w[k] > largest ? -w[k] : largest;
+        const scalar *const w = n.weight;
+        const bool fits = l->slot != no_slot && w[1] != 0 && w[1] == w[2] && w[0] == -2 * w[1] && w[3] == 0;
+        double sum = 0, largest = fabs((double)w[0]);
+        for (int k = 0; k < 4 && !fits; k++) {
+            const double weight = (double)w[k], size = fabs(weight);
+            sum += weight;
+            largest = size > largest ? size : largest;
+            fine = fine && (k < l->points || weight == 0);
         }
-        const bool fits = l->slot != no_slot && w[1] != 0 && w[1] == w[2] && w[0] == -2 * w[1] && n.rest == 0;
         const double strength = (double)(n.stiffness > n.damping ? n.stiffness : n.damping);
-        const double most = 4 * (double)largest * (double)largest * strength * lightest; /* 4 particles */
-        fine = fabs(sum) <= rounding * (double)largest && n.rest >= 0 && n.stiffness >= 0 && n.damping >= 0 &&
-               (n.banded == 0 || (n.banded == 1 && fits)) && (most < (double)SCALAR_MAX / 2 || weighted_fits(a, l, &n));
+        const double most = 4 * largest * largest * strength * lightest; /* 4 particles */
+        fine = fine && fabs(sum) <= rounding * largest && n.rest >= 0 && n.stiffness >= 0 && n.damping >= 0 &&
+               (n.banded == 0 || (n.banded == 1 && fits && n.rest == 0)) &&
+               (most < (double)SCALAR_MAX / 2 || weighted_fits(a, l, &n));
     }
     return fine;
 }
 
-/* What follows from the damping of links. damped: whether the state has it */
-static void settle_damping(spring_scene *s, scene_array array, scene_array rests, size_t slots, bool damped)
+/* Counts damped links, or makes all damping 0 if the state has none. */
+static void settle_damping(spring_scene *s, size_t first, size_t slots, bool damped)
 {
-    scalar *const damping = scene_memory(s, array);
-    const scalar *const rest = scene_read(s, rests);
-    for (size_t i = 0; i < slots && !damped; i++)
-        damping[i] = 0;
+    if (slots == 0)
+        return;
+    scalar *const damping = coefficients_of(s, ARRAY_BAND_DAMPING) + first;
+    const scalar *const rest = coefficients_of(s, ARRAY_BAND_REST) + first;
+    uint64_t count = 0, isotropic = 0;
+    if (!damped)
+        memset(damping, 0, slots * sizeof *damping);
     for (size_t i = 0; i < slots && damped; i++) {
-        s->damped_links += damping[i] > 0;
-        s->isotropic_links += s->layout.axes > 1 && damping[i] > 0 && rest[i] == 0;
+        count += damping[i] > 0;
+        isotropic += (damping[i] > 0) & (rest[i] == 0);
     }
+    s->damped_links += count;
+    s->isotropic_links += s->layout.axes > 1 ? isotropic : 0;
 }
 
-/* What follows from the coefficients of all links. */
+/* What follows from the coefficients of links. */
 static void settle_links(spring_scene *s, bool damped)
 {
     const scene_layout *const l = &s->layout;
     const size_t slots = l->three_point_bands > 0 ? l->band[l->bands - l->three_point_bands].slots : l->band_slots;
     const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS);
     const scalar *const damping = scene_read(s, ARRAY_BAND_DAMPING);
-    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
-    s->damped_links = s->isotropic_links = 0;
-    s->loose = s->nonlinear = 0;
-    settle_damping(s, ARRAY_BAND_DAMPING, ARRAY_BAND_REST, slots, damped);
-    settle_damping(s, ARRAY_LINK_DAMPING, ARRAY_LINK_REST, l->unbanded, damped);
+    settle_damping(s, 0, slots, damped);
+    settle_damping(s, l->band_slots, l->unbanded, damped);
     for (size_t i = 0; i < l->tethers && !damped; i++)
         tethers[i].damping = 0;
     for (size_t i = 0; i < slots; i++)
         occupied[i] = stiffness[i] + damping[i] > 0 ? -1 : 0;
-    for (size_t i = 0; i < l->weighted; i++)
-        scene_count_weighted(s, &weighted[i], true);
-    s->bounds_known = false;
 }
 
 #include "../simd/size_begin.h"
@@ -482,9 +478,9 @@ static void list_sections(const spring_scene *s, const state_header *h, section 
         {move_quantity, NULL, FINITE, ARRAY_HELD, holds ? numbers : 0, number},
         {move_masses, masses_valid, NOT_NEGATIVE, ARRAY_FREE_MASS, particles, number},
         {move_pins, NULL, ANY, ARRAY_INVERSE_MASS, particles, 1},
-        {move_rests, NULL, l->axes == 1 ? FINITE : NOT_NEGATIVE, ARRAY_LINK_REST, links, number},
-        {move_strengths, strengths_valid, STRENGTHS, ARRAY_LINK_STIFFNESS, links, number},
-        {move_strengths, dampings_valid, STRENGTHS, ARRAY_LINK_DAMPING, damped, number},
+        {move_rests, NULL, l->axes == 1 ? FINITE : NOT_NEGATIVE, ARRAY_BAND_REST, links, number},
+        {move_strengths, strengths_valid, STRENGTHS, ARRAY_BAND_STIFFNESS, links, number},
+        {move_strengths, dampings_valid, STRENGTHS, ARRAY_BAND_DAMPING, damped, number},
         {move_weighted, weighted_valid, FINITE, ARRAY_WEIGHTED, editable ? l->weighted : 0, weighted_count * number},
         {move_colliders, colliders_valid, ANY, ARRAY_COLLIDERS, bodies, 64 * collider_words},
         {move_touching, touching_valid, ANY, touched, bodies > 0 ? l->particles : 0, 1},
@@ -565,6 +561,11 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
     for (uint32_t buffer = 0; buffer < 2; buffer++) /* without colliders no step writes them */
         if (scene_has(s, touched_in(buffer)))
             memset(scene_memory(s, touched_in(buffer)), 0, s->layout.particles * sizeof(uint32_t));
+    if (scene_is_editable(s)) {
+        s->bounds_known = false;
+        s->damped_links = s->damped_weighted = s->isotropic_links = 0;
+        s->loose = s->nonlinear = 0;
+    }
     at = state + sizeof h;
     for (int i = 0; i < most_sections; at += section_bytes(&list[i++]))
         if (list[i].count > 0)

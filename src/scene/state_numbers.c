@@ -2,67 +2,65 @@
 /*
  * The check value of a saved state, and tests of many numbers at once.
  *
- * Check     Eight lanes of 64-bit words, each with one rotation and one multiplication per word. CRC-32 and FNV-1a take
- *           a byte at a time, several times as long as two steps, and XXH64 has two multiplications per word. Adding a
- *           word, the rotation and the multiplication by an odd number are bijections, so a change of one word always
- *           changes the value. The rotation brings the sign bits of numbers where the multiplication spreads them.
+ * Check     Eight lanes of 64-bit words, each with a sum of its words and a sum of these sums. Both are additions of SIMD
+ *           vectors, which take a third of the time of a multiplication per word. After each word, the halves of the sum
+ *           are exchanged: otherwise the second sum would lose the signs of numbers, which are the highest bits. Adding
+ *           a word and exchanging halves are bijections, so a change of one word always changes the value.
  */
 #include "state_numbers.h"
 
 #include "../simd/compiler.h"
 
-uint64_t spring_state_check(const uint8_t *state, size_t bytes)
-{
-    enum { lanes = 8 };
-    uint64_t lane[lanes] = {0}, hash = bytes;
-    size_t i = 0;
-    for (; i + lanes * word_bytes <= bytes; i += lanes * word_bytes) {
-        SPRING_UNROLL
-        for (size_t k = 0; k < lanes; k++)
-            lane[k] = hashed(lane[k], word_at(state + i + k * word_bytes));
-    }
-    for (size_t k = 0; i < bytes; i += word_bytes, k++)
-        lane[k] = hashed(lane[k], word_at(state + i));
-    for (size_t k = 0; k < lanes; k++)
-        hash = hashed(hash, lane[k]);
-    return hash ^ hash >> 32;
-}
-
-/* Words that are tested at once. */
+/* Words that are computed at once. */
 #if defined(__GNUC__)
 typedef uint64_t word_group __attribute__((vector_size(2 * sizeof(uint64_t))));
 #else
 typedef uint64_t word_group;
 #endif
 
-/* The result has the signs of numbers that are not valid: for any_sign, adding `one` to an exponent that is too large
-   carries into the sign. */
-SPRING_INLINE word_group invalid_signs(const uint8_t *state, size_t words, uint64_t one, uint64_t exponents,
-                                       bool any_sign)
+enum {
+    check_lanes = 8,
+    group_bytes = sizeof(word_group),
+    lane_groups = check_lanes * word_bytes / group_bytes,
+    row_bytes = lane_groups * group_bytes
+};
+
+SPRING_INLINE word_group group_at(const uint8_t *state)
 {
-    word_group word = {0};
-    copy_numbers(&word, state, words, word_bytes);
-    return any_sign ? (word & exponents) + one : word | (word + one);
+    word_group words;
+    copy_numbers(&words, state, group_bytes / word_bytes, word_bytes);
+    return words;
 }
 
-SPRING_INLINE uint64_t all_invalid_signs(const uint8_t *state, size_t bytes, uint64_t one, uint64_t exponents,
-                                         bool any_sign)
+/* Exchanges the halves of each word. gcc 12 does not find the instruction. */
+SPRING_INLINE word_group halves_exchanged(word_group words)
 {
-    enum { group = sizeof(word_group), groups = 4 };
-    word_group invalid = {0};
-    uint64_t part[group / word_bytes], all = 0;
-    size_t i = 0;
-    for (; i + groups * group <= bytes; i += groups * group) {
+#if defined(__GNUC__) && defined(__SSE2__)
+    return (word_group)_mm_shuffle_epi32((__m128i)words, 0xB1);
+#else
+    return words << 32 | words >> 32;
+#endif
+}
+
+uint64_t spring_state_check(const uint8_t *state, size_t bytes)
+{
+    word_group sum[lane_groups] = {{0}}, second[lane_groups] = {{0}};
+    uint8_t last[row_bytes] = {0};
+    uint64_t lane[2 * check_lanes], hash = bytes;
+    memcpy(last, state + bytes / row_bytes * row_bytes, bytes % row_bytes);
+    for (size_t i = 0; i < bytes; i += row_bytes) {
+        const uint8_t *const at = i + row_bytes <= bytes ? state + i : last;
         SPRING_UNROLL
-        for (size_t k = 0; k < groups; k++)
-            invalid |= invalid_signs(state + i + k * group, group / word_bytes, one, exponents, any_sign);
+        for (size_t k = 0; k < lane_groups; k++) {
+            sum[k] = halves_exchanged(sum[k] + group_at(at + k * group_bytes));
+            second[k] += sum[k];
+        }
     }
-    for (; i < bytes; i += word_bytes)
-        invalid |= invalid_signs(state + i, 1, one, exponents, any_sign);
-    memcpy(part, &invalid, sizeof part);
-    for (size_t k = 0; k < group / word_bytes; k++)
-        all |= part[k];
-    return all;
+    memcpy(lane, sum, sizeof sum);
+    memcpy(lane + check_lanes, second, sizeof second);
+    for (size_t k = 0; k < 2 * check_lanes; k++)
+        hash = hashed(hash, lane[k]);
+    return hash ^ hash >> 32;
 }
 
 bool spring_state_valid(const uint8_t *state, size_t bytes, size_t precision, bool any_sign, uint64_t headroom)
@@ -71,7 +69,21 @@ bool spring_state_valid(const uint8_t *state, size_t bytes, size_t precision, bo
     const uint64_t each = precision == sizeof(float) ? UINT64_C(0x100000001) : 1;
     const uint64_t sign = each * (precision == sizeof(float) ? UINT64_C(0x80000000) : UINT64_C(0x8000000000000000));
     const uint64_t last_bit = each * (precision == sizeof(float) ? UINT64_C(0x00800000) : UINT64_C(0x0010000000000000));
-    const uint64_t one = last_bit * (1 + headroom), exponents = sign - last_bit;
-    return (sign & (any_sign ? all_invalid_signs(state, bytes, one, exponents, true)
-                             : all_invalid_signs(state, bytes, one, exponents, false))) == 0;
+    const uint64_t one = last_bit * (1 + headroom), exponents = sign - last_bit, wrong = any_sign ? 0 : sign;
+    word_group invalid[lane_groups] = {{0}}; /* has the signs of numbers that are not valid */
+    uint8_t last[row_bytes] = {0};
+    uint64_t lane[check_lanes], all = 0;
+    memcpy(last, state + bytes / row_bytes * row_bytes, bytes % row_bytes);
+    for (size_t i = 0; i < bytes; i += row_bytes) {
+        const uint8_t *const at = i + row_bytes <= bytes ? state + i : last;
+        SPRING_UNROLL
+        for (size_t k = 0; k < lane_groups; k++) {
+            const word_group words = group_at(at + k * group_bytes);
+            invalid[k] |= ((words & exponents) + one) | (words & wrong); /* a large exponent carries into the sign */
+        }
+    }
+    memcpy(lane, invalid, sizeof lane);
+    for (size_t k = 0; k < check_lanes; k++)
+        all |= lane[k];
+    return (sign & all) == 0;
 }

@@ -5,8 +5,6 @@
 
 #include "stored_links.h"
 
-#include "../simd/size_begin.h"
-
 /* Stores the coefficients of a link in its slot of a band, with 0 if no band computes it. index: that of the slot */
 static inline void scene_fill_slot(spring_scene *s, const stored_weighted *l, size_t index)
 {
@@ -20,6 +18,18 @@ static inline void scene_fill_slot(spring_scene *s, const stored_weighted *l, si
     occupied[l->slot] = square > 0 && (l->stiffness > 0 || l->damping > 0) ? -1 : 0;
 }
 
+/* Adds a weighted link to the counts of the scene, or removes it. */
+static inline void scene_count_weighted(spring_scene *s, const stored_weighted *l, bool added)
+{
+    const uint64_t one = added ? 1 : (uint64_t)-1;
+    s->damped_links += l->damping > 0 ? one : 0;
+    s->damped_weighted += l->damping > 0 ? one : 0;
+    s->loose += l->banded ? 0 : (size_t)one;
+    s->nonlinear += l->rest > 0 && s->layout.axes > 1 ? (size_t)one : 0;
+}
+
+#include "../simd/size_begin.h"
+
 /* Stores the coefficients of a link, also in its slot of a band if it fits there. */
 static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, const spring_weighted_link *link)
 {
@@ -31,15 +41,6 @@ static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, co
     to->banded = to->slot != no_slot && three_points_of(link).offset > 0;
     if (to->slot != no_slot)
         scene_fill_slot(s, to, scene_slot_place(s, to->slot).index);
-}
-
-/* Adds a weighted link to the counts of the scene, or removes it. */
-static inline void scene_count_weighted(spring_scene *s, const stored_weighted *l, bool added)
-{
-    const uint64_t one = added ? 1 : (uint64_t)-1;
-    s->damped_links += l->damping > 0 ? one : 0;
-    s->loose += l->banded ? 0 : (size_t)one;
-    s->nonlinear += l->rest > 0 && s->layout.axes > 1 ? (size_t)one : 0;
 }
 
 /* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the
