@@ -44,9 +44,11 @@ SPRING_INLINE word_group halves_exchanged(word_group words)
 
 uint64_t spring_state_check(const uint8_t *state, size_t bytes)
 {
-    word_group sum[lane_groups] = {{0}}, second[lane_groups] = {{0}};
+    word_group sum[lane_groups], second[lane_groups];
     uint8_t last[row_bytes] = {0};
     uint64_t lane[2 * check_lanes], hash = bytes;
+    memset(sum, 0, sizeof sum);
+    memset(second, 0, sizeof second);
     memcpy(last, state + bytes / row_bytes * row_bytes, bytes % row_bytes);
     for (size_t i = 0; i < bytes; i += row_bytes) {
         const uint8_t *const at = i + row_bytes <= bytes ? state + i : last;
@@ -70,9 +72,10 @@ bool spring_state_valid(const uint8_t *state, size_t bytes, size_t precision, bo
     const uint64_t sign = each * (precision == sizeof(float) ? UINT64_C(0x80000000) : UINT64_C(0x8000000000000000));
     const uint64_t last_bit = each * (precision == sizeof(float) ? UINT64_C(0x00800000) : UINT64_C(0x0010000000000000));
     const uint64_t one = last_bit * (1 + headroom), exponents = sign - last_bit, wrong = any_sign ? 0 : sign;
-    word_group invalid[lane_groups] = {{0}}; /* has the signs of numbers that are not valid */
+    word_group invalid[lane_groups]; /* has the signs of numbers that are not valid */
     uint8_t last[row_bytes] = {0};
     uint64_t lane[check_lanes], all = 0;
+    memset(invalid, 0, sizeof invalid);
     memcpy(last, state + bytes / row_bytes * row_bytes, bytes % row_bytes);
     for (size_t i = 0; i < bytes; i += row_bytes) {
         const uint8_t *const at = i + row_bytes <= bytes ? state + i : last;
