@@ -5,13 +5,14 @@
  * Check     Eight lanes of 64-bit words, each with a sum of its words and a sum of these sums. Both are additions of SIMD
  *           vectors, which take a third of the time of a multiplication per word. After each word, the halves of the sum
  *           are exchanged: otherwise the second sum would lose the signs of numbers, which are the highest bits. Adding
- *           a word and exchanging halves are bijections, so a change of one word always changes the value.
+ *           a word and exchanging halves are bijections, so a change of one word always changes the first sum of its
+ *           lane.
  */
 #include "state_numbers.h"
 
 #include "../simd/compiler.h"
 
-/* Words that are computed at once. */
+/* Words that are processed together. */
 #if defined(__GNUC__)
 typedef uint64_t word_group __attribute__((vector_size(2 * sizeof(uint64_t))));
 #else
