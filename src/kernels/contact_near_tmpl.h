@@ -5,8 +5,12 @@
  * Method    For each particle, the distance from a collider at the start is compared with the length of the path. If R
  *           is the reach of the collider, (R + |d|)^2 <= (1 + e) R^2 + (1 + 1/e) d^2 for every e > 0. The bound with
  *           e = 1/16 is close for fast particles, the bound with e = 1/256 for slow ones. All factors are rounded up,
- *           for rounding errors. The root of the first bound is below 1.04 R + 4.2 |d|. So colliders are left out whose
- *           boxes, extended by this, do not meet the box of a chunk of particles. This changes no result.
+ *           for rounding errors. The root of the first bound is below 1.04 R + 4.2 |d|.
+ *
+ *           Most chunks of particles are far from most colliders. The clearance of a chunk from a collider is a lower
+ *           bound on the distance minus 1.04 R, for all its particles at the start of a step. It is kept during a call: a
+ *           step reduces it by the longest path and by the displacement of the collider. While it is longer than 4.2
+ *           times both, the collider is left out. This changes no result.
  */
 #ifndef SPRINGSTEP_CONTACT_NEAR_TMPL_H
 #define SPRINGSTEP_CONTACT_NEAR_TMPL_H
@@ -26,14 +30,16 @@ static void copy_motion(const scene_particles *p, const scene_motion *m, size_t 
         }
 }
 
-/* Lanes whose particle may touch the collider on its path from x0 to x. */
-SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, real radius)
+/* Lanes whose particle may touch the collider on its path from x0 to x. away: the squared distance from its core at the
+   start, of a plane the distance */
+SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, real radius, real *away)
 {
     if (c->shape == SPRING_PLANE) { /* the gap along the path is linear */
         const real size = vec_abs(x0.x) + vec_abs(x0.y) + vec_abs(x0.z);
-        const real reach = radius + (c->reach + 32 * SCALAR_EPSILON * size);
-        return not_mask(dot3(x0, splat3(c->axis[0])) - c->offset[0] >= reach) |
-               not_mask(dot3(x, splat3(c->axis[1])) - c->offset[1] >= reach);
+        const real rounding = 32 * SCALAR_EPSILON * size, reach = radius + (c->reach + rounding);
+        const real gap = dot3(x0, splat3(c->axis[0])) - c->offset[0];
+        *away = gap - 2 * rounding;
+        return not_mask(gap >= reach) | not_mask(dot3(x, splat3(c->axis[1])) - c->offset[1] >= reach);
     }
     real3 arm = minus3(x0, splat3(c->at));
     const real3 d = minus3(minus3(x, x0), splat3(c->shift));
@@ -51,34 +57,17 @@ SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, re
         }
     } else
         square = dot3(arm, arm);
+    *away = square;
     const real reach = c->reach + c->growth * radius, reach_squared = reach * reach;
     const real way = c->growth * c->growth * dot3(d, d);
     return not_mask(
         square > vec_min((scalar)1.07 * reach_squared + (scalar)17.1 * way, (scalar)1.006 * reach_squared + 258 * way));
 }
 
-/* The box of the starts of paths, and a bound on their lengths. One of each per lane. */
-typedef struct path_bounds {
-    real low[3], minus_high[3], minus_way; /* [m] */
-} path_bounds;
-
-SPRING_INLINE void begin_bounds(path_bounds *b)
+SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t axes)
 {
-    for (int a = 0; a < 3; a++)
-        b->low[a] = b->minus_high[a] = splat(SCALAR_MAX);
-    b->minus_way = splat(0);
-}
-
-SPRING_INLINE void extend_bounds(path_bounds *b, lane_mask where, real3 from, real3 to)
-{
-    const real start[3] = {from.x, from.y, from.z};
-    for (int a = 0; a < 3; a++) {
-        b->low[a] = select_real(where, vec_min(start[a], b->low[a]), b->low[a]);
-        b->minus_high[a] = select_real(where, vec_min(-start[a], b->minus_high[a]), b->minus_high[a]);
-    }
-    const real3 d = minus3(to, from);
-    const real minus_way = vec_minus_abs(d.x) - vec_abs(d.y) - vec_abs(d.z);
-    b->minus_way = select_real(where, vec_min(minus_way, b->minus_way), b->minus_way);
+    return (real3){vec_load(quantity), vec_load(quantity + stride),
+                   axes > 2 ? vec_load(quantity + 2 * stride) : splat(0)};
 }
 
 SPRING_INLINE scalar least_of_lanes(real a)
@@ -91,73 +80,139 @@ SPRING_INLINE scalar least_of_lanes(real a)
     return least;
 }
 
-/* Sets the bits of the colliders that particles with these paths may touch, and the bound on the lengths. */
-SPRING_NOINLINE uint32_t boxes_on_paths(const collider_bounds *c, const path_bounds *b, scalar *most)
+/* Minus a bound on the length of paths. */
+SPRING_INLINE real minus_way(real3 from, real3 to)
 {
-    scalar low[3], high[3], size = 0;
-    for (int a = 0; a < 3; a++) {
-        low[a] = least_of_lanes(b->low[a]);
-        high[a] = -least_of_lanes(b->minus_high[a]);
-        const scalar below = low[a] < 0 ? -low[a] : low[a], above = high[a] < 0 ? -high[a] : high[a];
-        size += below > above ? below : above;
-    }
-    const scalar way = *most = -least_of_lanes(b->minus_way);
-    const scalar margin = (scalar)way_of_box * c->growth * way + 64 * SCALAR_EPSILON * (size + way);
-    uint32_t meet = 0;
-    for (size_t k = 0; k < c->count; k += lanes) {
-        lane_mask apart = {0};
-        for (int a = 0; a < 3; a++)
-            apart |= (vec_load(c->low[a] + k) > high[a] + margin) | (vec_load(c->high[a] + k) < low[a] - margin);
-        if (!any(not_mask(apart)))
-            continue;
-        uint32_t each[lanes];
-        store_bits(each, bits_where(not_mask(apart), 1));
-        for (size_t i = 0; i < lanes; i++)
-            meet |= each[i] << (k + i);
-    }
-    return meet;
+    const real3 d = minus3(to, from);
+    return vec_minus_abs(d.x) - vec_abs(d.y) - vec_abs(d.z);
 }
 
-SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t axes)
+/* Lanes from i on that are particles of the chunk. */
+SPRING_INLINE lane_mask lanes_of_chunk(const resting_chunk *r, size_t i)
 {
-    return (real3){vec_load(quantity), vec_load(quantity + stride),
-                   axes > 2 ? vec_load(quantity + 2 * stride) : splat(0)};
+    return first_lanes(r->count - i < lanes ? r->count - i : lanes);
+}
+
+SPRING_INLINE scalar longest_way(const resting_chunk *r)
+{
+    const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
+    const scene_particles *const p = r->particles;
+    real least = splat(0);
+    for (size_t i = 0; i < r->count; i += lanes) {
+        const real each = minus_way(load_place(x0 + i, contact_chunk, p->axes), load_place(x + i, p->stride, p->axes));
+        least = select_real(lanes_of_chunk(r, i), vec_min(each, least), least);
+    }
+    return -least_of_lanes(least);
+}
+
+static const scalar spent = 1 + (scalar)0x1p-10; /* rounded up: what a step takes from the clearance */
+
+/* Bits of the colliders that a chunk may touch on paths of this length. The clearance is reduced by the step. */
+SPRING_NOINLINE uint32_t reached_on_way(const resting_chunk *r, scalar way)
+{
+    const collider_bounds *const c = r->bounds;
+    uint32_t reached = 0;
+    for (size_t k = 0; k < c->count; k += lanes) {
+        const real clear = vec_load(r->clearance + k), both = way + vec_load(c->displacement + k);
+        uint32_t each[lanes];
+        store_bits(each, bits_where(not_mask(clear > vec_load(c->factor + k) * both), 1));
+        for (size_t i = 0; i < lanes && k + i < c->count; i++)
+            reached |= each[i] << (k + i);
+        vec_store(r->clearance + k, (1 - 4 * SCALAR_EPSILON) * clear - spent * both);
+    }
+    return reached;
+}
+
+/* Finds the clearance from the box of the chunk, and removes colliders from r->nearby. */
+SPRING_NOINLINE void compare_boxes(resting_chunk *r)
+{
+    const collider_bounds *const c = r->bounds;
+    const scene_particles *const p = r->particles;
+    real low[3], minus_high[3];
+    scalar least[3], most[3], size = 0;
+    for (int a = 0; a < 3; a++)
+        low[a] = minus_high[a] = splat(SCALAR_MAX);
+    for (size_t i = 0; i < r->count; i += lanes) {
+        const lane_mask where = lanes_of_chunk(r, i);
+        const real3 from = load_place(r->kept->x0[0] + i, contact_chunk, p->axes);
+        const real start[3] = {from.x, from.y, from.z};
+        for (int a = 0; a < 3; a++) {
+            low[a] = select_real(where, vec_min(start[a], low[a]), low[a]);
+            minus_high[a] = select_real(where, vec_min(-start[a], minus_high[a]), minus_high[a]);
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        least[a] = least_of_lanes(low[a]);
+        most[a] = -least_of_lanes(minus_high[a]);
+        const scalar below = least[a] < 0 ? -least[a] : least[a], above = most[a] < 0 ? -most[a] : most[a];
+        size += below > above ? below : above;
+    }
+    for (size_t k = 0; k < c->count; k += lanes) {
+        real gap = splat(-SCALAR_MAX);
+        for (int a = 0; a < 3; a++) {
+            gap = -vec_min(-gap, most[a] - vec_load(c->low[a] + k));
+            gap = -vec_min(-gap, vec_load(c->high[a] + k) - least[a]);
+        }
+        gap -= 64 * SCALAR_EPSILON * size;
+        const real both = r->way + vec_load(c->displacement + k), clear = vec_load(r->clearance + k);
+        const lane_mask apart = gap > vec_load(c->factor + k) * both;
+        uint32_t each[lanes];
+        store_bits(each, bits_where(apart, 1));
+        for (size_t i = 0; i < lanes && k + i < c->count; i++)
+            r->nearby &= ~(each[i] << (k + i));
+        vec_store(r->clearance + k, select_real(apart, gap - spent * both, clear));
+    }
+}
+
+/* Adds collider k to the candidates. Returns whether it is one. */
+SPRING_NOINLINE bool find_candidates(resting_chunk *r, unsigned k)
+{
+    const collider_bound *const c = &r->bounds->each[k];
+    const scene_particles *const p = r->particles;
+    const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
+    real least = splat(SCALAR_MAX);
+    lane_mask found = {0};
+    for (size_t i = 0; i < r->count; i += lanes) {
+        const real3 from = load_place(x0 + i, contact_chunk, p->axes), to = load_place(x + i, p->stride, p->axes);
+        const real radius = r->radius_stride != 0 ? vec_load(r->radius + r->first + i) : splat(*r->radius);
+        const real inverse_mass = vec_load(p->inverse_mass + (r->first + i) * p->mass_stride);
+        const lane_mask moves = lanes_of_chunk(r, i) & (inverse_mass > 0);
+        real away;
+        const lane_mask touch = moves & may_touch(c, from, to, radius, &away);
+        store_bits(r->candidate + i, load_bits(r->candidate + i) | bits_where(touch, UINT32_C(1) << k));
+        least = select_real(moves, vec_min(away, least), least);
+        found |= touch;
+    }
+    if (any(found)) {
+        r->clearance[k] = -SCALAR_MAX;
+        return true;
+    }
+    if (c->shape != SPRING_PLANE)
+        least = (1 - 16 * SCALAR_EPSILON) * vec_sqrt(least);
+    r->clearance[k] = least_of_lanes(least) - c->far - spent * (r->way + r->bounds->displacement[k]);
+    return false;
 }
 
 static bool find_near_colliders(resting_chunk *r)
 {
-    const collider_bounds *const c = r->bounds;
-    const scene_particles *const p = r->particles;
-    const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
-    const size_t count = r->count;
-    path_bounds b;
-    begin_bounds(&b);
-    for (size_t i = 0; i < count; i += lanes) /* without padding lanes */
-        extend_bounds(&b, first_lanes(count - i < lanes ? count - i : lanes),
-                      load_place(x0 + i, contact_chunk, p->axes), load_place(x + i, p->stride, p->axes));
-    r->nearby = boxes_on_paths(c, &b, &r->way);
-    if (r->nearby == 0) {
-        memset(r->candidate, 0, count * sizeof *r->candidate);
-        return false;
+    for (size_t k = 0; k < r->bounds->count && r->begins; k += lanes)
+        vec_store(r->clearance + k, splat(-SCALAR_MAX));
+    r->way = longest_way(r);
+    r->nearby = reached_on_way(r, r->way);
+    memset(r->candidate, 0, sizeof r->candidate);
+    r->listed = 0;
+    const uint32_t all_but_one = r->nearby & (r->nearby - 1);
+    if ((all_but_one & (all_but_one - 1)) != 0) /* a box costs about as much as two colliders */
+        compare_boxes(r);
+    bool found = false;
+    for (unsigned k = 0; k < r->bounds->count; k++)
+        if ((r->nearby >> k & 1) != 0)
+            found = find_candidates(r, k) || found;
+    for (size_t i = 0; i < r->count && found; i++) {
+        r->list[r->listed] = (uint8_t)i;
+        r->listed += r->candidate[i] != 0;
     }
-    unsigned index[most_colliders], left = 0;
-    for (unsigned k = 0; k < c->count; k++) {
-        index[left] = k;
-        left += r->nearby >> k & 1;
-    }
-    lane_mask found = {0};
-    for (size_t i = 0; i < count; i += lanes) {
-        const real3 from = load_place(x0 + i, contact_chunk, p->axes), to = load_place(x + i, p->stride, p->axes);
-        const real radius = r->radius_stride != 0 ? vec_load(r->radius + r->first + i) : splat(*r->radius);
-        lane_bits bits = bits_where((lane_mask){0}, 0);
-        for (unsigned k = 0; k < left; k++) {
-            const lane_mask touch = may_touch(&c->each[index[k]], from, to, radius);
-            bits |= bits_where(touch, UINT32_C(1) << index[k]);
-            found |= touch;
-        }
-        store_bits(r->candidate + i, bits);
-    }
-    return any(found);
+    return found;
 }
 
 #endif

@@ -540,20 +540,19 @@ SPRING_NOINLINE void put3(const picked_particles *l, const lane_mask *where, con
 }
 
 /* Removes lanes whose changed path may touch another collider. */
-SPRING_NOINLINE void leave_to_others(const resting_chunk *r, unsigned c, const resting_lanes *q, lane_mask *fine)
+SPRING_NOINLINE void leave_to_others(resting_chunk *r, unsigned c, const resting_lanes *q, lane_mask *fine)
 {
     const real3 x = plus3(q->x0, q->d);
-    uint32_t others = r->nearby;
-    path_bounds paths;
-    begin_bounds(&paths);
-    extend_bounds(&paths, *fine & q->touching, q->x0, x);
-    if (any(paths.minus_way < -r->way)) {
-        scalar way;
-        others = boxes_on_paths(r->bounds, &paths, &way);
+    const scalar way = -least_of_lanes(select_real(*fine & q->touching, minus_way(q->x0, x), splat(0)));
+    if (way > r->way) {
+        r->nearby |= reached_on_way(r, way);
+        r->way = way;
     }
-    for (unsigned o = 0; o < r->bounds->count; o++)
-        if (o != c && (others >> o & 1) != 0)
-            *fine &= not_mask(q->touching & may_touch(&r->bounds->each[o], q->x0, x, q->radius));
+    for (unsigned o = 0; o < r->bounds->count; o++) {
+        real away;
+        if (o != c && (r->nearby >> o & 1) != 0)
+            *fine &= not_mask(q->touching & may_touch(&r->bounds->each[o], q->x0, x, q->radius, &away));
+    }
 }
 
 /* The step of particles that may touch collider c only: see rest_step. */
@@ -608,7 +607,7 @@ SPRING_CONTACT_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_
     fine &= l->where & not_mask(q.failed);
     const real3 x = plus3(q.x0, q.d);
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
-    if (r->bounds->count > 1 && any(fine & q.touching))
+    if (any(fine & q.touching))
         leave_to_others(r, c, &q, &fine);
     const lane_mask done = fine & q.touching;
     if (!any(done))
@@ -658,51 +657,52 @@ SPRING_CONTACT_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_
    complete. */
 typedef lane_mask rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
 
-/* The particles from *k on with collider c as their only candidate: those within the next vector if they fill half of it,
-   else any. *k: where to continue */
-SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, unsigned c, size_t *k, picked_particles *l)
+/* Picks particles from *k on of a list of places: those within the next vector if they fill half of it, else any. *k:
+   where to continue */
+SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, const uint8_t *list, size_t listed, size_t *k,
+                                     picked_particles *l)
 {
-    const size_t last = (r->count - 1) / lanes * lanes, start = *k < last ? *k : last; /* within the padding */
-    size_t count = 0, i = *k;
-    uint32_t window[lanes];
-    for (size_t j = 0; j < lanes; j++) {
-        window[j] = start + j >= *k && start + j < r->count && r->candidate[start + j] == UINT32_C(1) << c;
-        count += window[j];
-    }
-    l->consecutive = 2 * count >= lanes;
+    const size_t last = (r->count - 1) / lanes * lanes, start = list[*k] < last ? list[*k] : last; /* in the padding */
+    const size_t first = *k;
+    while (*k < listed && list[*k] < start + lanes)
+        ++*k;
+    l->consecutive = 2 * (*k - first) >= lanes;
     if (l->consecutive) {
+        uint32_t window[lanes] = {0};
+        for (size_t j = first; j < *k; j++)
+            window[list[j] - start] = 1;
         for (size_t j = 0; j < lanes; j++)
             l->place[j] = start + j;
         l->where = are_bits(load_bits(window), 1);
-        *k = start + lanes;
         return;
     }
-    for (count = 0; i < r->count && count < lanes; i++)
-        if (r->candidate[i] == UINT32_C(1) << c)
-            l->place[count++] = i;
-    l->where = first_lanes(count);
-    while (count < lanes)
-        l->place[count++] = l->place[0];
-    *k = i;
+    *k = listed - first < lanes ? listed : first + lanes;
+    for (size_t j = 0; j < lanes; j++)
+        l->place[j] = list[first + j < *k ? first + j : first];
+    l->where = first_lanes(*k - first);
 }
 
 SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
 {
     uint32_t single = 0;
-    for (size_t k = 0; k < r->count; k++)
-        single |= (r->candidate[k] & (r->candidate[k] - 1)) == 0 ? r->candidate[k] : 0;
-    for (unsigned c = 0; c < r->setting->count; c++) {
+    for (size_t k = 0; k < r->listed; k++) {
+        const uint32_t candidate = r->candidate[r->list[k]];
+        single |= (candidate & (candidate - 1)) == 0 ? candidate : 0;
+    }
+    for (unsigned c = 0; single >> c != 0; c++) {
         const contact_body *const b = &r->setting->body[c];
         if ((single >> c & 1) == 0 || b->slips || is_custom(b->shape))
             continue;
-        for (size_t k = 0; k < r->count;) {
-            if (r->candidate[k] != UINT32_C(1) << c) {
-                k++;
-                continue;
-            }
-            picked_particles l = {.consecutive = false};
+        uint8_t list[contact_chunk + 1];
+        size_t listed = 0;
+        for (size_t k = 0; k < r->listed; k++) {
+            list[listed] = r->list[k];
+            listed += r->candidate[r->list[k]] == UINT32_C(1) << c;
+        }
+        for (size_t k = 0; k < listed;) {
+            picked_particles l;
             uint32_t complete[lanes];
-            pick_next(r, c, &k, &l);
+            pick_next(r, list, listed, &k, &l);
             store_bits(complete, bits_where(step(r, &l, c), 1));
             for (size_t j = 0; j < lanes; j++)
                 r->done[l.place[j]] |= complete[j];

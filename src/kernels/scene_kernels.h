@@ -15,8 +15,8 @@
 #include <stddef.h>
 
 enum {
-    nystrom_stages = 7,                  /* of a Runge-Kutta-Nystrom method, after the first */
-    contact_chunk = 256 / sizeof(scalar) /* particles whose contacts are found together; limited by the stack */
+    nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
+    contact_chunk = contact_chunk_bytes / sizeof(scalar)
 };
 
 /* Which terms of the law of a link are computed. */
@@ -175,11 +175,13 @@ typedef struct collider_bound {
     scalar offset[2];                  /* [m] plane: normal . at, at the start and at the end */
     scalar segment[3], inverse_square; /* capsule, at the start */
     scalar reach, growth;              /* see contact_body */
+    scalar far;                        /* [m] of the widest particle: see contact_near_tmpl.h */
 } collider_bound;
 
 typedef struct collider_bounds {
     unsigned count;
-    scalar growth;                                          /* the largest */
+    scalar displacement[most_colliders]; /* [m] upper bounds on the displacements of points in the step */
+    scalar factor[most_colliders]; /* of paths: see contact_near_tmpl.h */
     scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, extended by the radius of particles */
     collider_bound each[most_colliders];                    /* [colliders of the definition] */
 } collider_bounds;
@@ -232,17 +234,22 @@ typedef struct resting_chunk {
     const kept_motion *kept;
     const scalar *radius, *friction; /* of particles: [m], of all if radius_stride is 0; NULL: 1 */
     size_t radius_stride, first, count;
-    uint32_t nearby;     /* bits of the colliders that any of these may touch on a way of this length */
+    scalar *clearance;   /* [m] by collider: see contact_near_tmpl.h */
+    bool begins;         /* the clearance is not known */
+    uint32_t nearby;     /* bits of the colliders that any of these may touch on paths of this length */
     scalar way;          /* [m] */
     const scalar *place; /* [m] where stop_resting stops: the position of the first particle on the first axis */
     bool at_end;         /* the stop is at the end of the step */
+    uint32_t listed;                   /* particles with a candidate */
+    uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
     uint32_t done[contact_chunk];      /* 1: the motion is complete */
     uint32_t *touched;                 /* by particle: the bit of the collider that it touches is added */
     scalar *change;                    /* [3][contact_chunk] [m/s] written: by the contact; may be kept.force */
 } resting_chunk;
 
-/* Sets `candidate`, `nearby` and `way` for the motion from kept.x0 to x. Returns whether there is a candidate. */
+/* Sets `candidate`, `list`, `nearby` and `way` for the motion from kept.x0 to x, for free particles. Returns whether
+   there is a candidate. */
 typedef bool near_kernel(resting_chunk *);
 
 /* For particles with one candidate. stop_resting completes a kick: it writes v, done and change. move_resting completes

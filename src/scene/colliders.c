@@ -24,6 +24,26 @@ static scalar bounded(double value)
     return value > (double)SCALAR_MAX ? SCALAR_MAX : value < -(double)SCALAR_MAX ? -SCALAR_MAX : (scalar)value;
 }
 
+static double distance_of_vectors(vector3 a, vector3 b)
+{
+    const vector3 d = {a.x - b.x, a.y - b.y, a.z - b.z};
+    return spring_sqrt(dot_of_vectors(d, d));
+}
+
+/* [m] An upper bound on the displacements of the points of the core in the step; of a turning plane it is infinite. */
+static double motion_of(const contact_body *b)
+{
+    const body_pose *const start = &b->start, *const end = &b->end;
+    double motion = distance_of_vectors(start->at, end->at);
+    if (b->shape == SPRING_PLANE && b->turns)
+        return (double)INFINITY;
+    for (int i = 0; i < 3 && b->shape == SPRING_BOX && b->turns; i++)
+        motion += b->half[i] * distance_of_vectors(start->axis[i], end->axis[i]);
+    if (b->shape == SPRING_CAPSULE)
+        motion += distance_of_vectors(start->along, end->along);
+    return motion;
+}
+
 /* Bound k: a body in the precision of the scene. Its reach grows by more than the rounding errors of coordinates. */
 static void place_bound(collider_bounds *bounds, unsigned k, const contact_body *b, scalar largest_radius)
 {
@@ -46,7 +66,10 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
     to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
     to->growth = (scalar)b->growth;
-    const double margin = reach_of_box * b->growth * (double)largest_radius + rounding;
+    const double margin = reach_of_box * b->growth * (double)largest_radius + rounding, up = 1.001;
+    to->far = (scalar)(up * ((double)to->reach + b->growth * (double)largest_radius) * reach_of_box);
+    bounds->displacement[k] = (scalar)(up * motion_of(b));
+    bounds->factor[k] = (scalar)(up * way_of_box * b->growth);
     for (int a = 0; a < 3; a++) {
         bounds->low[a][k] = (scalar)(b->low[a] - margin);
         bounds->high[a][k] = (scalar)(b->high[a] + margin);
@@ -59,20 +82,17 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
     contact_body *const body = scene_memory(s, ARRAY_PLACED);
     collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
     bounds->count = s->colliders;
-    double growth = 1;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
             spring_contact_place(&body[i], &c[i], t0, t1, s->layout.axes);
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
-        growth = fmax(growth, body[i].growth);
     }
-    bounds->growth = (scalar)growth; /* of this step: particles that are near do not depend on earlier steps */
-    for (uint32_t i = s->colliders; all && i < most_colliders; i++) /* fill the last vector: they touch nothing */
-        for (int a = 0; a < 3; a++) {
-            bounds->low[a][i] = SCALAR_MAX;
-            bounds->high[a][i] = -SCALAR_MAX;
-        }
+    for (uint32_t i = s->colliders; all && i < most_colliders; i++) { /* the last vector has numbers */
+        bounds->displacement[i] = bounds->factor[i] = 0;
+        for (int a = 0; a < 3; a++)
+            bounds->low[a][i] = bounds->high[a][i] = 0;
+    }
 }
 
 /* The position of `at`, t after the colliders were set. */

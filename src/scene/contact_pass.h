@@ -19,6 +19,8 @@ typedef struct scene_contacts {
     const scalar *x;        /* [m] positions at the end of the step */
     const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
     uint32_t *touched;      /* written: the same for this step; may be `before` */
+    scalar *clearance;      /* [m] by chunk and collider: see contact_near_tmpl.h */
+    bool begins;            /* in the first step of a call, it is not known */
 } scene_contacts;
 
 /* A particle in a motion with contacts. Its free motion has the operations of leapfrog_particles_tmpl.h. */
@@ -190,8 +192,8 @@ static void filter_candidates(const spring_scene *s, const scene_contacts *t, re
 {
     const scene_particles *const p = r->particles;
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
-    for (size_t k = 0; k < r->count; k++) {
-        const size_t i = r->first + k;
+    for (uint32_t l = 0; l < r->listed; l++) {
+        const size_t k = r->list[l], i = r->first + k;
         if (p->inverse_mass[i * p->mass_stride] == 0)
             r->candidate[k] = 0;
         for (unsigned c = 0; c < t->setting.count && masks != NULL; c++)
@@ -225,7 +227,8 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
     const uint32_t axes = r->particles->axes;
     spring_impulse sum = {{0}, {0}};
     unsigned c = 0; /* of the sum */
-    for (size_t k = 0; k < r->count; k++) {
+    for (uint32_t l = 0; l < r->listed; l++) {
+        const size_t k = r->list[l];
         if (which[k] == 0)
             continue;
         if (r->candidate[k] != UINT32_C(1) << c) {
@@ -264,6 +267,8 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
     r->radius_stride = t->radius_stride;
     r->first = from;
     r->count = count;
+    r->clearance = t->clearance + from / contact_chunk * clearance_stride(t->setting.count);
+    r->begins = t->begins;
     memset(r->done, 0, sizeof r->done);
 }
 
@@ -277,6 +282,11 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     const bool fine = kernel(p, m, from, from + count); /* otherwise stops may remove what is too fast */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
+    r.listed = 0;
+    for (size_t k = 0; k < count; k++) {
+        r.list[r.listed] = (uint8_t)k;
+        r.listed += touched[k] != 0;
+    }
     if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
         r.place = x + from;
         r.at_end = at_end;
@@ -286,9 +296,9 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
         add_impulses(s, t, &r, r.done, r.place, p->stride, NULL, NULL);
     }
     bool all_fine = true;
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = from + k;
-        if (r.done[k] != 0 || (fine && touched[k] == 0))
+    for (size_t l = 0; l < (fine ? r.listed : count); l++) {
+        const size_t k = fine ? r.list[l] : l, i = from + k;
+        if (r.done[k] != 0)
             continue;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
         if (touched[k] != 0 && !pinned) {
@@ -327,8 +337,9 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
         add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk, m->x + from, m->v + from);
     }
     bool all_fine = true;
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = from + k;
+    double way = fine ? (double)r.way : (double)INFINITY;
+    for (size_t l = 0; l < (fine ? r.listed : count); l++) {
+        const size_t k = fine ? r.list[l] : l, i = from + k;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
         if (r.done[k] != 0)
             continue;
@@ -340,7 +351,10 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
         prepare_state(s, p, m, &kept, i, k, &q);
         q.c.nearby = fine ? r.candidate[k] : UINT32_MAX;
         all_fine = advance_in_contact(t, p, m, i, &q) && all_fine;
+        way = fmax(way, fabs(q.c.d.x) + fabs(q.c.d.y) + fabs(q.c.d.z));
     }
+    for (unsigned c = 0; c < t->setting.count && way > (double)r.way; c++) /* contacts made paths longer */
+        r.clearance[c] -= (scalar)(1.001 * way);
     return all_fine;
 }
 

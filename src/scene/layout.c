@@ -211,6 +211,7 @@ static void list_arrays(const spring_scene_def *def, const element_sizes *size, 
     /* Their velocities are read after the forces of bands have been stored. */
     const bool reads_later = l->weighted > 0 || (l->unbanded > 0 && (l->bands > 0 || !records));
     const size_t number = size->number, index = sizeof(uint32_t), quantity = l->quantity;
+    const size_t chunk = contact_chunk_bytes / number, chunks = (l->particles + chunk - 1) / chunk;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
     const array_row rows[ARRAY_COUNT] = {
         [ARRAY_X_0] = {number, quantity, true},
@@ -248,6 +249,7 @@ static void list_arrays(const spring_scene_def *def, const element_sizes *size, 
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
         [ARRAY_PLACED] = {sizeof(contact_body), l->colliders, collides},
         [ARRAY_BOUNDS] = {1, size->bounds_head + l->colliders * size->bound, collides},
+        [ARRAY_CLEARANCE] = {number, chunks * clearance_stride(l->colliders), collides},
         [ARRAY_IMPULSES] = {sizeof(spring_impulse), 2 * (size_t)l->colliders, collides},
         [ARRAY_ORIGINS] = {sizeof(double[3]), l->colliders, collides},
         [ARRAY_RADIUS] = {number, l->particles + padding, collides && def->radius != NULL},

@@ -54,6 +54,7 @@ typedef enum scene_array {
     ARRAY_COLLIDERS, /* spring_collider, as set */
     ARRAY_PLACED,    /* contact_body, in the current step */
     ARRAY_BOUNDS,    /* one collider_bounds: the same, to find particles that are near */
+    ARRAY_CLEARANCE, /* [m] by chunk and collider: see kernels/contact_near_tmpl.h */
     ARRAY_IMPULSES,  /* spring_impulse of each collider, in the last call, then in the present call */
     ARRAY_ORIGINS,   /* [m] points that impulses of the present call are about: double[3] of each collider */
     ARRAY_RADIUS,    /* [m] by particle; absent: particle_radius */
@@ -100,5 +101,13 @@ typedef struct scene_layout {
     size_t offset[ARRAY_COUNT];                      /* [bytes] from the start of the block; SIZE_MAX: absent */
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
+
+enum { contact_chunk_bytes = 256 }; /* of one quantity of particles whose contacts are found together: see the stack */
+
+/* Elements of ARRAY_CLEARANCE from one chunk to the next: whole vectors. */
+static inline size_t clearance_stride(size_t colliders)
+{
+    return (colliders + 7) / 8 * 8;
+}
 
 #endif

@@ -120,6 +120,7 @@ static void prepare_collisions(scene_step *step)
         .records = true,
     };
     c->bounds = scene_read(s, ARRAY_BOUNDS);
+    c->clearance = scene_memory(s, ARRAY_CLEARANCE);
     for (size_t i = 0; i < padding; i++)
         c->equal_radius[i] = s->particle_radius;
     c->radius_stride = scene_has(s, ARRAY_RADIUS);
