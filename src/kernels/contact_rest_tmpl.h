@@ -476,28 +476,24 @@ SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, r
 /* Particles of a chunk, one in each lane. */
 typedef struct picked_particles {
     size_t place[lanes]; /* in the chunk */
-    lane_mask where;     /* others are of other particles, or of one of these */
+    lane_mask where;     /* others are of other particles, or of the first one */
     bool consecutive;
 } picked_particles;
 
-SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, size_t stride, size_t step, uint32_t axes,
-                               real *to)
+SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, size_t stride, uint32_t axes, real *to)
 {
-    for (uint32_t a = 0; a < axes; a++) {
-        scalar each[lanes];
-        for (size_t j = 0; j < lanes; j++)
-            each[j] = from[a * stride + step * l->place[j]];
-        to[a] = vec_load_lanes(each);
-    }
+    for (uint32_t a = 0; a < axes; a++)
+        to[a] = vec_load_places(from + a * stride, l->place);
 }
 
-/* A quantity of these particles. from: of the first particle of the chunk; step: between particles, 0 or 1 */
+/* A quantity of these particles. from: of the first particle of the chunk; step: between particles, 1, or 0: it is one
+   vector for all particles */
 SPRING_CONTACT_INLINE real pick(const picked_particles *l, const scalar *from, size_t step)
 {
     real picked;
-    if (l->consecutive)
+    if (l->consecutive || step == 0)
         return vec_load(from + step * l->place[0]);
-    pick_each(l, from, 0, step, 1, &picked);
+    pick_each(l, from, 0, 1, &picked);
     return picked;
 }
 
@@ -505,10 +501,10 @@ SPRING_CONTACT_INLINE real pick(const picked_particles *l, const scalar *from, s
 SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step,
                                   uint32_t axes)
 {
-    if (l->consecutive)
+    if (l->consecutive || step == 0)
         return load_place(from + step * l->place[0], stride, axes);
     real to[3] = {splat(0), splat(0), splat(0)};
-    pick_each(l, from, stride, step, axes, to);
+    pick_each(l, from, stride, axes, to);
     return (real3){to[0], to[1], to[2]};
 }
 

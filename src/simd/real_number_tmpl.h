@@ -49,6 +49,11 @@ SPRING_INLINE real vec_load_lanes(const scalar *p)
     return *p;
 }
 
+SPRING_INLINE real vec_load_places(const scalar *from, const size_t *place)
+{
+    return from[*place];
+}
+
 typedef uint32_t lane_bits;
 
 SPRING_INLINE lane_bits load_bits(const uint32_t *p)

@@ -111,6 +111,16 @@ SPRING_INLINE real vec_load_lanes(const scalar *p)
     return a;
 }
 
+/* Lane i is from[place[i]]. */
+SPRING_INLINE real vec_load_places(const scalar *from, const size_t *place)
+{
+    real a = {0};
+    SPRING_UNROLL
+    for (size_t i = 0; i < sizeof a / sizeof(scalar); i++)
+        a[i] = from[place[i]];
+    return a;
+}
+
 /* 32 bits in each lane. */
 typedef lane_mask lane_bits;
 
