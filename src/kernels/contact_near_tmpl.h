@@ -2,15 +2,14 @@
 /*
  * Finding particles that may touch a collider. Their contacts are computed one at a time, by scene/contact.c.
  *
- * Method    For each particle, the distance from a collider at the start is compared with the length of the path. If R
- *           is the reach of the collider, (R + |d|)^2 <= (1 + e) R^2 + (1 + 1/e) d^2 for every e > 0. The bound with
- *           e = 1/16 is close for fast particles, the bound with e = 1/256 for slow ones. All factors are rounded up,
- *           for rounding errors. The root of the first bound is below 1.04 R + 4.2 |d|.
+ * Method    A particle of radius r may touch a collider on the path d if its distance from the core of the collider at the
+ *           start is at most reach + growth (r + |d - shift|): see contact_body. |d - shift| is replaced by the sum of
+ *           its components, which is not smaller.
  *
  *           Most chunks of particles are far from most colliders. The clearance of a chunk from a collider is a lower
- *           bound on the distance minus 1.04 R, for all its particles at the start of a step. It is kept during a call: a
- *           step reduces it by the longest path and by the displacement of the collider. While it is longer than 4.2
- *           times both, the collider is left out. This changes no result.
+ *           bound on the distance minus reach + growth r, for all its particles at the start of a step. It is kept during
+ *           a call: a step reduces it by the longest path and by the displacement of the collider. While it is longer
+ *           than both of them together, the collider is left out. This changes no result.
  */
 #ifndef SPRINGSTEP_CONTACT_NEAR_TMPL_H
 #define SPRINGSTEP_CONTACT_NEAR_TMPL_H
@@ -58,10 +57,9 @@ SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, re
     } else
         square = dot3(arm, arm);
     *away = square;
-    const real reach = c->reach + c->growth * radius, reach_squared = reach * reach;
-    const real way = c->growth * c->growth * dot3(d, d);
-    return not_mask(
-        square > vec_min((scalar)1.07 * reach_squared + (scalar)17.1 * way, (scalar)1.006 * reach_squared + 258 * way));
+    const real way = vec_abs(d.x) + vec_abs(d.y) + vec_abs(d.z);
+    const real wide = (1 + 16 * SCALAR_EPSILON) * (c->reach + c->growth * (radius + way));
+    return not_mask(square > wide * wide);
 }
 
 SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t axes)

@@ -66,10 +66,10 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
     to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
     to->growth = (scalar)b->growth;
-    const double margin = reach_of_box * b->growth * (double)largest_radius + rounding, up = 1.001;
-    to->far = (scalar)(up * ((double)to->reach + b->growth * (double)largest_radius) * reach_of_box);
-    bounds->displacement[k] = (scalar)(up * motion_of(b));
-    bounds->factor[k] = (scalar)(up * way_of_box * b->growth);
+    const double margin = rounded_up * b->growth * (double)largest_radius + rounding;
+    to->far = (scalar)(rounded_up * ((double)to->reach + b->growth * (double)largest_radius));
+    bounds->displacement[k] = (scalar)(rounded_up * motion_of(b));
+    bounds->factor[k] = (scalar)(rounded_up * b->growth);
     for (int a = 0; a < 3; a++) {
         bounds->low[a][k] = (scalar)(b->low[a] - margin);
         bounds->high[a][k] = (scalar)(b->high[a] + margin);

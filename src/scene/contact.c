@@ -309,8 +309,7 @@ static void bound_with_box(contact_body *b, double margin)
 
 /* If a body turns by the angle A within a step, points of the frame at the distance l from its origin are displaced by
    A l, so |y1 - y0| <= |d - shift| + A |x0 - at|, where |x0 - at| <= distance from the core + size of the core. A chord
-   touches the body only if the distance at its start is at most the radii + |y1 - y0|. The box contains all places that
-   contact_near_tmpl.h does not exclude by its weaker inequalities. */
+   touches the body only if the distance at its start is at most the radii + |y1 - y0|. */
 static void find_bounds(contact_body *b, double angle, double custom_bound)
 {
     const double infinite = (double)INFINITY, shift = length3(subtract(b->end.at, b->start.at));
@@ -321,7 +320,7 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     const bool unbounded = !(angle < 0.5);
     b->growth = unbounded ? 1 : 1 / (1 - angle);
     b->reach = unbounded ? infinite : (radius + stretch + angle * size_of_core(b)) * b->growth;
-    bound_with_box(b, reach_of_box * b->reach + way_of_box * b->growth * shift);
+    bound_with_box(b, rounded_up * (b->reach + b->growth * shift));
 }
 
 /* [m] The size of numbers that its distances are computed from. */
@@ -1207,7 +1206,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
-        const double margin = b->growth * (reach_of_box * p->radius + way_of_box * way) + 4 * slop_of(s, p, b);
+        const double margin = rounded_up * b->growth * (p->radius + way) + 4 * slop_of(s, p, b);
         bool meets = (b->bits & p->bits) != 0;
         for (int a = 0; a < 3 && meets; a++) {
             const double at = component(p->x0, a);

@@ -12,8 +12,8 @@
 
 enum { most_colliders = 32 }; /* bits of a mask */
 
-/* Factors of the bounds that kernels/contact_near_tmpl.h uses: of the reach of a collider, and of a displacement. */
-static const double reach_of_box = 1.04, way_of_box = 4.2;
+/* Factor of upper bounds on distances, for rounding errors. */
+static const double rounded_up = 1.001;
 
 /* SPRING_NO_CUSTOM omits the code of custom bodies, for bindings that cannot pass their functions. */
 static inline bool is_custom(spring_shape shape)
@@ -55,7 +55,7 @@ typedef struct contact_body {
     body_pose start, end;
     /* Bounds on where a particle of radius r is at the start of the step if it can touch the body. */
     double reach, growth; /* [m] distance from the core <= reach + growth (r + |d - shift|), d: its displacement */
-    /* [m] Box, to be extended by growth (reach_of_box r + way_of_box |d|). +-INFINITY: not bounded. */
+    /* [m] Box, to be extended by growth (r + |d|). +-INFINITY: not bounded. */
     double low[3], high[3];
 } contact_body;
 

@@ -44,11 +44,6 @@ SPRING_INLINE lane_mask vec_load_mask(const int8_t *p)
     return *p != 0;
 }
 
-SPRING_INLINE real vec_load_lanes(const scalar *p)
-{
-    return *p;
-}
-
 SPRING_INLINE real vec_load_places(const scalar *from, const size_t *place)
 {
     return from[*place];

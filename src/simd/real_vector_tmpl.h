@@ -100,17 +100,6 @@ SPRING_INLINE lane_mask vec_load_mask(const int8_t *p)
 #endif
 }
 
-/* Loads each lane by itself, since a load that spans recent stores stalls. */
-SPRING_INLINE real vec_load_lanes(const scalar *p)
-{
-    const volatile scalar *const each = p; /* so that the loads are not combined */
-    real a = {0};
-    SPRING_UNROLL
-    for (size_t i = 0; i < sizeof a / sizeof(scalar); i++)
-        a[i] = each[i];
-    return a;
-}
-
 /* Lane i is from[place[i]]. */
 SPRING_INLINE real vec_load_places(const scalar *from, const size_t *place)
 {
