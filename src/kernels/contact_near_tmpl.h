@@ -20,12 +20,16 @@
 
 static void copy_motion(const scene_particles *p, const scene_motion *m, size_t first, size_t count, kept_motion *k)
 {
+    const bool predicts = m->predicted == m->force;
+    k->force = predicts ? k->copy[0] : m->force + first;
+    k->force_stride = predicts ? contact_chunk : p->stride;
     for (uint32_t a = 0; a < p->axes; a++)
         for (size_t i = 0; i < count; i += lanes) {
             const size_t at = a * p->stride + first + i;
             vec_store(k->x0[a] + i, vec_load(m->x0 + at));
             vec_store(k->v0[a] + i, vec_load(m->v0 + at));
-            vec_store(k->force[a] + i, vec_load(m->force + at));
+            if (predicts)
+                vec_store(k->copy[a] + i, vec_load(m->force + at));
         }
 }
 
@@ -162,14 +166,14 @@ SPRING_NOINLINE void compare_boxes(resting_chunk *r)
     }
 }
 
-/* Adds collider k to the candidates. Returns whether it is one. */
-SPRING_NOINLINE bool find_candidates(resting_chunk *r, unsigned k)
+/* Adds collider k to the candidates. Returns the bits of the vectors that have one. */
+SPRING_NOINLINE uint64_t find_candidates(resting_chunk *r, unsigned k)
 {
     const collider_bound *const c = &r->bounds->each[k];
     const scene_particles *const p = r->particles;
     const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
     real least = splat(SCALAR_MAX);
-    lane_mask found = {0};
+    uint64_t found = 0;
     for (size_t i = 0; i < r->count; i += lanes) {
         const real3 from = load_place(x0 + i, contact_chunk, p->axes), to = load_place(x + i, p->stride, p->axes);
         const real radius = r->radius_stride != 0 ? vec_load(r->radius + r->first + i) : splat(*r->radius);
@@ -177,18 +181,20 @@ SPRING_NOINLINE bool find_candidates(resting_chunk *r, unsigned k)
         const lane_mask moves = lanes_of_chunk(r, i) & (inverse_mass > 0);
         real away;
         const lane_mask touch = moves & may_touch(c, from, to, radius, &away);
-        store_bits(r->candidate + i, load_bits(r->candidate + i) | bits_where(touch, UINT32_C(1) << k));
         least = select_real(moves, vec_min(away, least), least);
-        found |= touch;
+        if (!any(touch))
+            continue;
+        store_bits(r->candidate + i, load_bits(r->candidate + i) | bits_where(touch, UINT32_C(1) << k));
+        found |= UINT64_C(1) << i / lanes;
     }
-    if (any(found)) {
+    if (found != 0) {
         r->clearance[k] = -SCALAR_MAX;
-        return true;
+        return found;
     }
     if (c->shape != SPRING_PLANE)
         least = (1 - 16 * SCALAR_EPSILON) * vec_sqrt(least);
     r->clearance[k] = least_of_lanes(least) - c->far - spent * (r->way + r->bounds->displacement[k]);
-    return false;
+    return 0;
 }
 
 static bool find_near_colliders(resting_chunk *r)
@@ -197,20 +203,23 @@ static bool find_near_colliders(resting_chunk *r)
         vec_store(r->clearance + k, splat(-SCALAR_MAX));
     r->way = longest_way(r);
     r->nearby = reached_on_way(r, r->way);
-    memset(r->candidate, 0, sizeof r->candidate);
     r->listed = 0;
+    if (r->nearby == 0)
+        return false;
     const uint32_t all_but_one = r->nearby & (r->nearby - 1);
     if ((all_but_one & (all_but_one - 1)) != 0) /* a box costs about as much as two colliders */
         compare_boxes(r);
-    bool found = false;
-    for (unsigned k = 0; k < r->bounds->count; k++)
+    uint64_t found = 0;
+    memset(r->candidate, 0, sizeof r->candidate);
+    for (unsigned k = 0; r->nearby >> k != 0; k++)
         if ((r->nearby >> k & 1) != 0)
-            found = find_candidates(r, k) || found;
-    for (size_t i = 0; i < r->count && found; i++) {
-        r->list[r->listed] = (uint8_t)i;
-        r->listed += r->candidate[i] != 0;
-    }
-    return found;
+            found |= find_candidates(r, k);
+    for (size_t i = 0; found != 0; i += lanes, found >>= 1)
+        for (size_t j = i; j < i + lanes && (found & 1) != 0; j++) {
+            r->list[r->listed] = (uint8_t)j;
+            r->listed += r->candidate[j] != 0;
+        }
+    return r->listed > 0;
 }
 
 #endif

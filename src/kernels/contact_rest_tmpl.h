@@ -563,7 +563,7 @@ SPRING_CONTACT_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_
     const bool dragged = p->drag != 0;
     resting_lanes q;
     const real inverse_mass = pick(l, p->inverse_mass + first * p->mass_stride, p->mass_stride);
-    const real3 force = pick3(l, r->kept->force[0], contact_chunk, 1, axes);
+    const real3 force = pick3(l, r->kept->force, r->kept->force_stride, 1, axes);
     const real3 held = pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes);
     q.x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, axes);
     q.v0 = pick3(l, r->kept->v0[0], contact_chunk, 1, axes);
@@ -603,7 +603,7 @@ SPRING_CONTACT_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_
     fine &= l->where & not_mask(q.failed);
     const real3 x = plus3(q.x0, q.d);
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
-    if (any(fine & q.touching))
+    if (r->bounds->count > 1 && any(fine & q.touching))
         leave_to_others(r, c, &q, &fine);
     const lane_mask done = fine & q.touching;
     if (!any(done))
@@ -669,7 +669,7 @@ SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, const uint8_t *list
             window[list[j] - start] = 1;
         for (size_t j = 0; j < lanes; j++)
             l->place[j] = start + j;
-        l->where = are_bits(load_bits(window), 1);
+        l->where = *k - first == lanes ? first_lanes(lanes) : are_bits(load_bits(window), 1);
         return;
     }
     *k = listed - first < lanes ? listed : first + lanes;

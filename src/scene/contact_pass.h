@@ -179,7 +179,7 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
     scene_contact_particle(s, i, &c->c);
     c->free[2] = c->v0[2] = c->x0[2] = 0;
     for (uint32_t a = 0; a < p->axes; a++) {
-        const scalar force = kept->force[a][k] + p->held[(a * p->stride + i) * p->held_stride];
+        const scalar force = kept->force[a * kept->force_stride + k] + p->held[(a * p->stride + i) * p->held_stride];
         c->free[a] = inverse_mass * force + p->gravity[a * padding];
         c->v0[a] = kept->v0[a][k];
         c->x0[a] = kept->x0[a][k];
@@ -187,13 +187,14 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
     c->c.x0 = vector_from(c->x0);
 }
 
-/* Removes candidates that masks exclude, and all candidates of pinned particles. */
+/* Removes candidates that masks exclude, and all candidates of pinned particles. Nothing is done yet. */
 static void filter_candidates(const spring_scene *s, const scene_contacts *t, resting_chunk *r)
 {
     const scene_particles *const p = r->particles;
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
     for (uint32_t l = 0; l < r->listed; l++) {
         const size_t k = r->list[l], i = r->first + k;
+        r->done[k] = 0;
         if (p->inverse_mass[i * p->mass_stride] == 0)
             r->candidate[k] = 0;
         for (unsigned c = 0; c < t->setting.count && masks != NULL; c++)
@@ -269,7 +270,6 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
     r->count = count;
     r->clearance = t->clearance + from / contact_chunk * clearance_stride(t->setting.count);
     r->begins = t->begins;
-    memset(r->done, 0, sizeof r->done);
 }
 
 /* The kick that ends a step, of a chunk of particles, some of which touch colliders at x. */
@@ -284,6 +284,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     r.change = change[0];
     r.listed = 0;
     for (size_t k = 0; k < count; k++) {
+        r.done[k] = 0;
         r.list[r.listed] = (uint8_t)k;
         r.listed += touched[k] != 0;
     }
@@ -327,9 +328,11 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     const bool fine = kernel(p, m, from, from + count);
     memset(t->touched + from, 0, count * sizeof *t->touched);
     begin_rest(s, t, p, m, &kept, from, count, &r);
-    r.change = kept.force[0];
+    r.change = kept.copy[0];
     if (!kernels->find_near(&r) && fine)
         return true;
+    if (!fine)
+        memset(r.done, 0, sizeof r.done);
     filter_candidates(s, t, &r);
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
