@@ -7,9 +7,9 @@
  *           its components, which is not smaller.
  *
  *           Most chunks of particles are far from most colliders. The clearance of a chunk from a collider is a lower
- *           bound on the distance minus reach + growth r, for all its particles at the start of a step. It is kept during
- *           a call: a step reduces it by the longest path and by the displacement of the collider. While it is longer
- *           than both of them together, the collider is left out. This changes no result.
+ *           bound on the distance of its particles from the core at the start of a step. It is kept during a call: a step
+ *           reduces it by the longest path and by the displacement of the core. While it is longer than the inequality
+ *           asks for, the collider is left out. This changes no result.
  */
 #ifndef SPRINGSTEP_CONTACT_NEAR_TMPL_H
 #define SPRINGSTEP_CONTACT_NEAR_TMPL_H
@@ -117,7 +117,7 @@ SPRING_NOINLINE uint32_t reached_on_way(const resting_chunk *r, scalar way)
     for (size_t k = 0; k < c->count; k += lanes) {
         const real clear = vec_load(r->clearance + k), both = way + vec_load(c->displacement + k);
         uint32_t each[lanes];
-        store_bits(each, bits_where(not_mask(clear > vec_load(c->factor + k) * both), 1));
+        store_bits(each, bits_where(not_mask(clear > vec_load(c->wide + k) + vec_load(c->factor + k) * both), 1));
         for (size_t i = 0; i < lanes && k + i < c->count; i++)
             reached |= each[i] << (k + i);
         vec_store(r->clearance + k, (1 - 4 * SCALAR_EPSILON) * clear - spent * both);
@@ -162,7 +162,7 @@ SPRING_NOINLINE void compare_boxes(resting_chunk *r)
         store_bits(each, bits_where(apart, 1));
         for (size_t i = 0; i < lanes && k + i < c->count; i++)
             r->nearby &= ~(each[i] << (k + i));
-        vec_store(r->clearance + k, select_real(apart, gap - spent * both, clear));
+        vec_store(r->clearance + k, select_real(apart, gap + vec_load(c->wide + k) - spent * both, clear));
     }
 }
 
@@ -193,7 +193,7 @@ SPRING_NOINLINE uint64_t find_candidates(resting_chunk *r, unsigned k)
     }
     if (c->shape != SPRING_PLANE)
         least = (1 - 16 * SCALAR_EPSILON) * vec_sqrt(least);
-    r->clearance[k] = least_of_lanes(least) - c->far - spent * (r->way + r->bounds->displacement[k]);
+    r->clearance[k] = least_of_lanes(least) - spent * (r->way + r->bounds->displacement[k]);
     return 0;
 }
 
@@ -211,7 +211,7 @@ static bool find_near_colliders(resting_chunk *r)
         compare_boxes(r);
     uint64_t found = 0;
     memset(r->candidate, 0, sizeof r->candidate);
-    for (unsigned k = 0; r->nearby >> k != 0; k++)
+    for (unsigned k = 0; k < r->bounds->count; k++)
         if ((r->nearby >> k & 1) != 0)
             found |= find_candidates(r, k);
     for (size_t i = 0; found != 0; i += lanes, found >>= 1)

@@ -685,7 +685,7 @@ SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
         const uint32_t candidate = r->candidate[r->list[k]];
         single |= (candidate & (candidate - 1)) == 0 ? candidate : 0;
     }
-    for (unsigned c = 0; single >> c != 0; c++) {
+    for (unsigned c = 0; c < r->setting->count; c++) {
         const contact_body *const b = &r->setting->body[c];
         if ((single >> c & 1) == 0 || b->slips || is_custom(b->shape))
             continue;

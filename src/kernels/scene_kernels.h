@@ -175,13 +175,13 @@ typedef struct collider_bound {
     scalar offset[2];                  /* [m] plane: normal . at, at the start and at the end */
     scalar segment[3], inverse_square; /* capsule, at the start */
     scalar reach, growth;              /* see contact_body */
-    scalar far;                        /* [m] of the widest particle: see contact_near_tmpl.h */
 } collider_bound;
 
 typedef struct collider_bounds {
     unsigned count;
-    scalar displacement[most_colliders]; /* [m] upper bounds on the displacements of points in the step */
-    scalar factor[most_colliders]; /* of paths: see contact_near_tmpl.h */
+    /* Upper bounds: [m] displacements of the core in the step; particles on a path of the length d touch nothing at
+       distances above wide [m] + factor d. */
+    scalar displacement[most_colliders], wide[most_colliders], factor[most_colliders];
     scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, extended by the radius of particles */
     collider_bound each[most_colliders];                    /* [colliders of the definition] */
 } collider_bounds;

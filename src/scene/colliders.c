@@ -67,7 +67,7 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
     to->growth = (scalar)b->growth;
     const double margin = rounded_up * b->growth * (double)largest_radius + rounding;
-    to->far = (scalar)(rounded_up * ((double)to->reach + b->growth * (double)largest_radius));
+    bounds->wide[k] = (scalar)(rounded_up * ((double)to->reach + b->growth * (double)largest_radius));
     bounds->displacement[k] = (scalar)(rounded_up * motion_of(b));
     bounds->factor[k] = (scalar)(rounded_up * b->growth);
     for (int a = 0; a < 3; a++) {
@@ -89,7 +89,7 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
         }
     }
     for (uint32_t i = s->colliders; all && i < most_colliders; i++) { /* the last vector has numbers */
-        bounds->displacement[i] = bounds->factor[i] = 0;
+        bounds->displacement[i] = bounds->wide[i] = bounds->factor[i] = 0;
         for (int a = 0; a < 3; a++)
             bounds->low[a][i] = bounds->high[a][i] = 0;
     }
