@@ -243,7 +243,7 @@ typedef struct resting_chunk {
     scalar way;          /* [m] */
     const scalar *place; /* [m] where stop_resting stops: the position of the first particle on the first axis */
     bool at_end;         /* the stop is at the end of the step */
-    uint32_t listed;                   /* particles with a candidate */
+    uint32_t listed;     /* particles with a candidate */
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
     uint32_t done[contact_chunk];      /* 1: the motion is complete */

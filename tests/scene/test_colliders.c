@@ -61,7 +61,8 @@ static void others_change_nothing(void)
         double x[3 * count], v[3 * count], results[2][6];
         const uint32_t axes = 2 + (uint32_t)(random_bits() % 2);
         const double reach = random_log(0.5, 3), speed = random_log(0.003, 10), dt = random_log(0.002, 0.1);
-        const size_t others = run % 2 == 0 ? count - 1 : 1 + random_bits() % 2; /* few, so that colliders are far at first */
+        const size_t others =
+            run % 2 == 0 ? count - 1 : 1 + random_bits() % 2; /* few, so that colliders are far at first */
         for (size_t i = 0; i < count * axes; i++) {
             x[i] = random_uniform(-reach, reach);
             v[i] = random_uniform(-speed, speed);
