@@ -15,13 +15,13 @@ cost(solver, precision, tethers, fraction) = is(solver, precision, tethers, frac
 set datafile missing NaN
 set logscale xy
 set xrange [0.018:0.5]
-set yrange [9:900]
+set yrange [9:1500]
 set xtics ("2 %%" 0.02, "3 %%" 0.03, "6 %%" 0.06, "10 %%" 0.1, "20 %%" 0.2, "40 %%" 0.4)
-set ytics (10, 20, 50, 100, 200, 500)
+set ytics (10, 20, 50, 100, 200, 500, 1000)
 set xlabel "stretch of a column"
 set ylabel "time for 1/60 s / µs" offset 1,0
-set arrow 1 from 0.03,9 to 0.03,900 nohead linetype theory
-set arrow 2 from 0.06,9 to 0.06,900 nohead linetype theory
+set arrow 1 from 0.03,9 to 0.03,1500 nohead linetype theory
+set arrow 2 from 0.06,9 to 0.06,1500 nohead linetype theory
 call plots."key.gp" 9
 set output ARG1
 plot cape using "column_stretch":(cost("leapfrog", "float", "rows", 0.9)) with linespoints linetype 3 linewidth 3 \
