@@ -682,8 +682,8 @@ SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
 {
     uint32_t single = 0;
     for (size_t k = 0; k < r->listed; k++) {
-        const uint32_t candidate = r->candidate[r->list[k]];
-        single |= (candidate & (candidate - 1)) == 0 ? candidate : 0;
+        const uint32_t bits = r->candidate[r->list[k]];
+        single |= (bits & (bits - 1)) == 0 ? bits : 0;
     }
     for (unsigned c = 0; c < r->setting->count; c++) {
         const contact_body *const b = &r->setting->body[c];
