@@ -480,6 +480,12 @@ typedef struct picked_particles {
     bool consecutive;
 } picked_particles;
 
+/* Two lanes or one always are. */
+SPRING_CONTACT_INLINE bool are_consecutive(const picked_particles *l)
+{
+    return lanes <= 2 || l->consecutive;
+}
+
 SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, size_t stride, uint32_t axes, real *to)
 {
     for (uint32_t a = 0; a < axes; a++)
@@ -491,7 +497,7 @@ SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, si
 SPRING_CONTACT_INLINE real pick(const picked_particles *l, const scalar *from, size_t step)
 {
     real picked;
-    if (l->consecutive || step == 0)
+    if (are_consecutive(l) || step == 0)
         return vec_load(from + step * l->place[0]);
     pick_each(l, from, 0, 1, &picked);
     return picked;
@@ -501,7 +507,7 @@ SPRING_CONTACT_INLINE real pick(const picked_particles *l, const scalar *from, s
 SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step,
                                   uint32_t axes)
 {
-    if (l->consecutive || step == 0)
+    if (are_consecutive(l) || step == 0)
         return load_place(from + step * l->place[0], stride, axes);
     real to[3] = {splat(0), splat(0), splat(0)};
     pick_each(l, from, stride, axes, to);
@@ -525,7 +531,7 @@ SPRING_NOINLINE void put3(const picked_particles *l, const lane_mask *where, con
                           size_t stride, uint32_t axes)
 {
     const real each[3] = {value->x, value->y, value->z};
-    if (!l->consecutive) {
+    if (!are_consecutive(l)) {
         put_each(l, where, each, to, stride, axes);
         return;
     }
@@ -663,7 +669,7 @@ SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, const uint8_t *list
     while (*k < listed && list[*k] < start + lanes)
         ++*k;
     l->consecutive = 2 * (*k - first) >= lanes;
-    if (l->consecutive) {
+    if (are_consecutive(l)) {
         uint32_t window[lanes] = {0};
         for (size_t j = first; j < *k; j++)
             window[list[j] - start] = 1;
