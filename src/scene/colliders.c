@@ -66,8 +66,9 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
     to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
     to->growth = (scalar)b->growth;
-    const double margin = rounded_up * b->growth * (double)largest_radius + rounding;
-    bounds->wide[k] = (scalar)(rounded_up * ((double)to->reach + b->growth * (double)largest_radius));
+    /* `rounding` once more for the clearance, since positions of colliders are rounded in each step. */
+    const double margin = rounded_up * b->growth * (double)largest_radius + 2 * rounding;
+    bounds->wide[k] = (scalar)(rounded_up * ((double)to->reach + b->growth * (double)largest_radius) + rounding);
     bounds->displacement[k] = (scalar)(rounded_up * motion_of(b));
     bounds->factor[k] = (scalar)(rounded_up * b->growth);
     for (int a = 0; a < 3; a++) {
