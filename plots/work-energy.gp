@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Relative energy error versus run time for the ideal spring after ten thousand periods. With long steps RK4 loses all
-# of the energy. Leapfrog's energy error depends on the step, and not on the duration of the run. Open markers: GSL.
+# of the energy. The bound of leapfrog's energy error depends on the step, and not on the duration of the run. Open markers: GSL.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "420 + key_height(methods + 3)"
 work = ARG3
 call plots."need.gp" work "problem solver effort time_s energy_error"
