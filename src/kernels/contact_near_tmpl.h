@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Finding particles that may touch a collider. Their contacts are computed one at a time, by scene/contact.c.
+ * Finding particles that may touch a collider.
  *
  * Method    A particle of radius r may touch a collider on the path d if its distance from the core of the collider at the
  *           start is at most reach + growth (r + |d - shift|): see contact_body. |d - shift| is replaced by the sum of
@@ -21,7 +21,7 @@
 static void copy_motion(const scene_particles *p, const scene_motion *m, size_t first, size_t count, kept_motion *k)
 {
     const bool predicts = m->predicted == m->force;
-    k->force = predicts ? k->copy[0] : m->force + first;
+    k->force = predicts ? k->force_copy[0] : m->force + first;
     k->force_stride = predicts ? contact_chunk : p->stride;
     for (uint32_t a = 0; a < p->axes; a++)
         for (size_t i = 0; i < count; i += lanes) {
@@ -29,7 +29,7 @@ static void copy_motion(const scene_particles *p, const scene_motion *m, size_t 
             vec_store(k->x0[a] + i, vec_load(m->x0 + at));
             vec_store(k->v0[a] + i, vec_load(m->v0 + at));
             if (predicts)
-                vec_store(k->copy[a] + i, vec_load(m->force + at));
+                vec_store(k->force_copy[a] + i, vec_load(m->force + at));
         }
 }
 
@@ -107,8 +107,6 @@ SPRING_INLINE scalar longest_way(const resting_chunk *r)
     return -least_of_lanes(least);
 }
 
-static const scalar spent = 1 + (scalar)0x1p-10; /* rounded up: what a step takes from the clearance */
-
 /* Bits of the colliders that a chunk may touch on paths of this length. The clearance is reduced by the step. */
 SPRING_NOINLINE uint32_t reached_on_way(const resting_chunk *r, scalar way)
 {
@@ -120,7 +118,7 @@ SPRING_NOINLINE uint32_t reached_on_way(const resting_chunk *r, scalar way)
         store_bits(each, bits_where(not_mask(clear > vec_load(c->wide + k) + vec_load(c->factor + k) * both), 1));
         for (size_t i = 0; i < lanes && k + i < c->count; i++)
             reached |= each[i] << (k + i);
-        vec_store(r->clearance + k, (1 - 4 * SCALAR_EPSILON) * clear - spent * both);
+        vec_store(r->clearance + k, (1 - 4 * SCALAR_EPSILON) * clear - (scalar)rounded_up * both);
     }
     return reached;
 }
@@ -162,7 +160,7 @@ SPRING_NOINLINE void compare_boxes(resting_chunk *r)
         store_bits(each, bits_where(apart, 1));
         for (size_t i = 0; i < lanes && k + i < c->count; i++)
             r->nearby &= ~(each[i] << (k + i));
-        vec_store(r->clearance + k, select_real(apart, gap + vec_load(c->wide + k) - spent * both, clear));
+        vec_store(r->clearance + k, select_real(apart, gap + vec_load(c->wide + k) - (scalar)rounded_up * both, clear));
     }
 }
 
@@ -193,7 +191,7 @@ SPRING_NOINLINE uint64_t find_candidates(resting_chunk *r, unsigned k)
     }
     if (c->shape != SPRING_PLANE)
         least = (1 - 16 * SCALAR_EPSILON) * vec_sqrt(least);
-    r->clearance[k] = least_of_lanes(least) - spent * (r->way + r->bounds->displacement[k]);
+    r->clearance[k] = least_of_lanes(least) - (scalar)rounded_up * (r->way + r->bounds->displacement[k]);
     return 0;
 }
 

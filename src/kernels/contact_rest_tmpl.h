@@ -480,7 +480,7 @@ typedef struct picked_particles {
     bool consecutive;
 } picked_particles;
 
-/* Two lanes or one always are. */
+/* Always true with at most two lanes. */
 SPRING_CONTACT_INLINE bool are_consecutive(const picked_particles *l)
 {
     return lanes <= 2 || l->consecutive;

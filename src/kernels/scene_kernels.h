@@ -186,11 +186,11 @@ typedef struct collider_bounds {
     collider_bound each[most_colliders];                    /* [colliders of the definition] */
 } collider_bounds;
 
-/* What a motion overwrites. */
+/* What a motion may overwrite. */
 typedef struct kept_motion {
     scalar x0[3][contact_chunk], v0[3][contact_chunk];
-    scalar copy[3][contact_chunk]; /* of forces, if velocities are predicted in their place */
-    const scalar *force;           /* the forces, or their copy */
+    scalar force_copy[3][contact_chunk]; /* if velocities are predicted in the place of forces */
+    const scalar *force;                 /* the forces, or their copy */
     size_t force_stride;
 } kept_motion;
 
@@ -248,7 +248,7 @@ typedef struct resting_chunk {
     uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
     uint32_t done[contact_chunk];      /* 1: the motion is complete */
     uint32_t *touched;                 /* by particle: the bit of the collider that it touches is added */
-    scalar *change;                    /* [3][contact_chunk] [m/s] written: by the contact; may be kept.copy */
+    scalar *change;                    /* [3][contact_chunk] [m/s] written: by the contact; may be kept.force_copy */
 } resting_chunk;
 
 /* Sets `candidate`, `list`, `nearby` and `way` for the motion from kept.x0 to x, for free particles. Returns whether

@@ -89,7 +89,7 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
     }
-    for (uint32_t i = s->colliders; all && i < most_colliders; i++) { /* the last vector has numbers */
+    for (uint32_t i = s->colliders; all && i < most_colliders; i++) { /* numbers, to fill the last vector */
         bounds->displacement[i] = bounds->wide[i] = bounds->factor[i] = 0;
         for (int a = 0; a < 3; a++)
             bounds->low[a][i] = bounds->high[a][i] = 0;

@@ -187,14 +187,13 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
     c->c.x0 = vector_from(c->x0);
 }
 
-/* Removes candidates that masks exclude, and all candidates of pinned particles. Nothing is done yet. */
+/* Removes candidates that masks exclude, and all candidates of pinned particles. */
 static void filter_candidates(const spring_scene *s, const scene_contacts *t, resting_chunk *r)
 {
     const scene_particles *const p = r->particles;
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
     for (uint32_t l = 0; l < r->listed; l++) {
         const size_t k = r->list[l], i = r->first + k;
-        r->done[k] = 0;
         if (p->inverse_mass[i * p->mass_stride] == 0)
             r->candidate[k] = 0;
         for (unsigned c = 0; c < t->setting.count && masks != NULL; c++)
@@ -282,9 +281,9 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     const bool fine = kernel(p, m, from, from + count); /* otherwise stops may remove what is too fast */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
+    memset(r.done, 0, sizeof r.done);
     r.listed = 0;
     for (size_t k = 0; k < count; k++) {
-        r.done[k] = 0;
         r.list[r.listed] = (uint8_t)k;
         r.listed += touched[k] != 0;
     }
@@ -328,11 +327,10 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     const bool fine = kernel(p, m, from, from + count);
     memset(t->touched + from, 0, count * sizeof *t->touched);
     begin_rest(s, t, p, m, &kept, from, count, &r);
-    r.change = kept.copy[0];
+    r.change = kept.force_copy[0];
     if (!kernels->find_near(&r) && fine)
         return true;
-    if (!fine)
-        memset(r.done, 0, sizeof r.done);
+    memset(r.done, 0, sizeof r.done);
     filter_candidates(s, t, &r);
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
@@ -357,7 +355,7 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
         way = fmax(way, fabs(q.c.d.x) + fabs(q.c.d.y) + fabs(q.c.d.z));
     }
     for (unsigned c = 0; c < t->setting.count && way > (double)r.way; c++) /* contacts made paths longer */
-        r.clearance[c] -= (scalar)(1.001 * way);
+        r.clearance[c] -= (scalar)(rounded_up * way);
     return all_fine;
 }
 

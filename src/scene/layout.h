@@ -102,7 +102,8 @@ typedef struct scene_layout {
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
 
-enum { contact_chunk_bytes = 256 }; /* of one quantity of particles whose contacts are found together: see the stack */
+/* The size of a quantity of the particles whose contacts are found together. The stack limits it. */
+enum { contact_chunk_bytes = 256 };
 
 /* Elements of ARRAY_CLEARANCE from one chunk to the next: whole vectors. */
 static inline size_t clearance_stride(size_t colliders)
