@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Counts the test cases of a Meson test run, and prints the skipped cases with their reasons.
+"""Counts the test cases of a Meson test run, and prints the failed ones, and the skipped ones with their reasons.
 
 usage: count_tests.py BUILD/meson-logs
 
@@ -21,6 +21,7 @@ NO_REASON = "", "Skipped", "unconditional skip"  # as pytest words it
 def outcome(case, name):
     """The result of a case. A skip without a reason is a failure, since a program without output looks the same."""
     if case.find("failure") is not None or case.find("error") is not None:
+        print(f"FAILED   {name}")
         return "failed"
     skipped = case.find("skipped")
     if skipped is None:
