@@ -97,7 +97,7 @@ SPRING_INLINE lane_mask lanes_of_chunk(const resting_chunk *r, size_t i)
 
 SPRING_INLINE scalar longest_way(const resting_chunk *r)
 {
-    const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
+    const scalar *const x0 = r->kept->x0[0], *const x = r->step->x + r->first;
     const scene_particles *const p = r->particles;
     real least = splat(0);
     for (size_t i = 0; i < r->count; i += lanes) {
@@ -169,7 +169,7 @@ SPRING_NOINLINE uint64_t find_candidates(resting_chunk *r, unsigned k)
 {
     const collider_bound *const c = &r->bounds->each[k];
     const scene_particles *const p = r->particles;
-    const scalar *const x0 = r->kept->x0[0], *const x = r->kick_drift->x + r->first;
+    const scalar *const x0 = r->kept->x0[0], *const x = r->step->x + r->first;
     real least = splat(SCALAR_MAX);
     uint64_t found = 0;
     for (size_t i = 0; i < r->count; i += lanes) {

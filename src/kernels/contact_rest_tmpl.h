@@ -55,6 +55,11 @@ SPRING_CONTACT_INLINE real sum_of_sizes(real3 a)
     return vec_abs(a.x) + vec_abs(a.y) + vec_abs(a.z);
 }
 
+SPRING_CONTACT_INLINE lane_mask are_slow(const real3 *v, scalar fastest)
+{
+    return (vec_abs(v->x) <= fastest) & (vec_abs(v->y) <= fastest) & (vec_abs(v->z) <= fastest);
+}
+
 /* Whether the surface is its own tangent plane throughout the step. */
 SPRING_CONTACT_INLINE bool is_fixed_plane(const contact_body *b)
 {
@@ -124,13 +129,13 @@ SPRING_CONTACT_INLINE void round_lanes(near_lanes *out, real3 from_core, real ra
     out->gap = distance - radius;
 }
 
-SPRING_CONTACT_INLINE void capsule_lanes(near_lanes *out, real3 y, vector3 segment, real radius)
+SPRING_NOINLINE void capsule_lanes(near_lanes *out, const real3 *y, const vector3 *segment, const real *radius)
 {
-    const double square = segment.x * segment.x + segment.y * segment.y + segment.z * segment.z;
-    const real3 axis = splat_vector(segment);
-    const real along = square > 0 ? dot3(y, axis) / splat((scalar)square) : splat(0);
+    const double square = segment->x * segment->x + segment->y * segment->y + segment->z * segment->z;
+    const real3 axis = splat_vector(*segment);
+    const real along = square > 0 ? dot3(*y, axis) / splat((scalar)square) : splat(0);
     out->along = vec_min(vec_not_negative(along), splat(1));
-    round_lanes(out, plus_scaled3(y, -out->along, axis), radius);
+    round_lanes(out, plus_scaled3(*y, -out->along, axis), *radius);
 }
 
 SPRING_CONTACT_INLINE void box_lanes(near_lanes *out, const contact_body *b, real3 y, real radius)
@@ -167,7 +172,7 @@ SPRING_NOINLINE void nearest_lanes(const contact_body *b, bool at_end, const rea
         out->normal = (real3){splat(1), splat(0), splat(0)};
         out->gap = y->x - radius;
     } else if (b->shape == SPRING_CAPSULE)
-        capsule_lanes(out, *y, at_end ? b->end.segment : b->start.segment, radius);
+        capsule_lanes(out, y, at_end ? &b->end.segment : &b->start.segment, &radius);
     else if (b->shape == SPRING_BOX)
         box_lanes(out, b, *y, radius);
     else
@@ -183,38 +188,51 @@ SPRING_CONTACT_INLINE real3 body_velocity(const contact_body *b, const body_pose
     return b->turns ? plus3(v, cross3(splat_vector(p->spin), minus3(x, splat_vector(p->at)))) : v;
 }
 
-/* The last kick: removes the component of v into the body. */
-SPRING_NOINLINE void stop_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
-                                const real *friction, lane_mask where, real3 *v)
+/* The normal of the surface at x, where it touches, and the velocity of the body there. */
+SPRING_NOINLINE void surface_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
+                                   real3 *normal, real3 *velocity)
 {
     near_lanes at;
     if (b->shape == SPRING_CAPSULE) { /* not in its frame, which begins anew in each step */
-        capsule_lanes(&at, minus3(*x, splat_vector(p->at)), p->along, (scalar)b->radius + *radius);
+        const real3 arm = minus3(*x, splat_vector(p->at));
+        const real distance = (scalar)b->radius + *radius;
+        capsule_lanes(&at, &arm, &p->along, &distance);
     } else {
         const real3 y = place_in_lanes(b, p, *x);
         nearest_lanes(b, false, &y, radius, &at);
         at.normal = direction_out_lanes(b, p, at.normal);
     }
-    const real3 velocity = body_velocity(b, p, at.along, *x), u = minus3(*v, velocity);
-    const real rate = dot3(u, at.normal);
-    const real3 along = plus_scaled3(u, -rate, at.normal);
+    *normal = at.normal;
+    *velocity = body_velocity(b, p, at.along, *x);
+}
+
+/* The last kick: removes the component of v into the body. */
+SPRING_NOINLINE void stop_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
+                                const real *friction, lane_mask where, real3 *v)
+{
+    real3 normal, velocity;
+    surface_lanes(b, p, x, radius, &normal, &velocity);
+    const real3 u = minus3(*v, velocity);
+    const real rate = dot3(u, normal);
+    const real3 along = plus_scaled3(u, -rate, normal);
     const real limit = (scalar)b->friction * *friction * vec_abs(rate), square = dot3(along, along);
     const lane_mask sticks = square <= limit * limit;
-    const real3 slides = minus3(plus_scaled3(*v, -rate, at.normal),
-                                times3(limit / vec_sqrt(select_real(sticks, splat(1), square)), along));
+    const real3 slides =
+        minus3(plus_scaled3(*v, -rate, normal), times3(limit / vec_sqrt(select_real(sticks, splat(1), square)), along));
     *v = select3(where & (rate < 0), select3(sticks, velocity, slides), *v);
 }
 
 /* Steps 1 and 2: lanes in which the contact begins at the start of the step are touching. */
-SPRING_CONTACT_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, real3 *normal, real *gap)
+SPRING_CONTACT_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, real3 *way, real3 *normal,
+                                      real *gap)
 {
     const contact_body *const b = q->b;
     const scalar epsilon = 8 * SCALAR_EPSILON;
     q->slop = epsilon * (sum_of_sizes(q->x0) + ((scalar)b->size + q->radius));
     *start = place_in_lanes(b, &b->start, q->x0);
-    const real3 way = way_in_lanes(b, q->x0, q->d);
+    *way = way_in_lanes(b, q->x0, q->d);
     nearest_lanes(b, false, start, &q->radius, at);
-    real rate = dot3(at->normal, way);
+    real rate = dot3(at->normal, *way);
     if (b->shape == SPRING_CAPSULE && b->turns)
         rate -= at->along * dot3(at->normal, splat_vector(vector_between(b->end.segment, b->start.segment)));
     const lane_mask later = at->gap >= q->slop;
@@ -356,16 +374,16 @@ SPRING_NOINLINE void hit_lanes(resting_lanes *q, const real3 *u, const real3 *n,
 /* Pressing from the start of the step. Lanes that hold are carried by the body; `free` lanes slide. */
 typedef struct pressing_lanes {
     real3 x1, along; /* [m] the end without pressing, and the way along the surface */
-    real3 n;         /* normal in the scene, at the start */
+    real3 n, n_end;  /* normal in the scene, and its direction at the end of the step */
     real3 shift;     /* [m] by friction */
-    real gap, toward, lambda;
+    real inward;     /* [m] from the tangent plane, at the end without pressing */
+    real toward, lambda;
     slide_lanes sliding;
     lane_mask presses, clear, failed;
 } pressing_lanes;
 
 /* Friction changes where the path ends, and so the impulse: two passes, in the lanes with friction. */
-SPRING_CONTACT_INLINE void find_friction(const resting_lanes *q, const near_lanes *at, const near_lanes *there,
-                                         scalar h, pressing_lanes *s)
+SPRING_CONTACT_INLINE void find_friction(const resting_lanes *q, const near_lanes *there, scalar h, pressing_lanes *s)
 {
     const contact_body *const b = q->b;
     const real mu = (scalar)b->friction * q->friction;
@@ -377,10 +395,8 @@ SPRING_CONTACT_INLINE void find_friction(const resting_lanes *q, const near_lane
             lambda = vec_not_negative(-there->gap) / (h * cosine_lanes(s->n, there->normal));
         } else {
             const real3 x = plus3(s->x1, s->shift);
-            if (b->turns) {
-                const real3 way = way_in_lanes(b, q->x0, plus3(q->d, s->shift));
-                lambda = vec_not_negative(-(s->gap + dot3(at->normal, way))) / (h * s->toward);
-            }
+            if (b->turns)
+                lambda = vec_not_negative(-(s->inward + dot3(s->n_end, s->shift))) / (h * s->toward);
             if (!is_fixed_plane(b))
                 find_lambda_lanes(q, &x, &s->n, h, 1, rubs, &lambda, &clear, &s->failed);
         }
@@ -406,7 +422,8 @@ SPRING_CONTACT_INLINE real3 ride_of(const contact_body *b, real3 y, real along)
 }
 
 /* Steps 3 and 4 from the start of the step, in the lanes that touch. */
-SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 n, real gap, scalar h)
+SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 way, real3 n, real gap,
+                                       scalar h)
 {
     const contact_body *const b = q->b;
     const real3 velocity = body_velocity(b, &b->start, at->along, q->x0);
@@ -414,30 +431,32 @@ SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, r
     const real rate = dot3(u, n);
     const lane_mask impact = q->touching & (rate * h < -q->slop);
     if (any(impact)) {
+        const real3 d = q->d;
         hit_lanes(q, &u, &n, &rate, impact, h);
         u = minus3(q->v0, velocity);
+        way = plus3(way, direction_in_lanes(b, &b->end, minus3(q->d, d)));
     }
     pressing_lanes s;
     near_lanes there;
     s.x1 = plus3(q->x0, q->d);
     nearest_at_end(q, &s.x1, &there);
-    real3 way = way_in_lanes(b, q->x0, q->d);
-    const real inward = gap + dot3(at->normal, way), inverse = splat(1 / h);
-    s.presses = q->touching & not_mask((inward >= 0) & (there.gap >= 0));
+    s.inward = gap + dot3(at->normal, way);
+    s.presses = q->touching & not_mask((s.inward >= 0) & (there.gap >= 0));
     if (!any(s.presses))
         return;
+    s.n = s.n_end = n;
     s.toward = splat(1);
     if (!has_plain_frame(b)) {
-        s.toward = cosine_lanes(n, direction_out_lanes(b, &b->end, at->normal));
+        s.n_end = direction_out_lanes(b, &b->end, at->normal);
+        s.toward = cosine_lanes(n, s.n_end);
         way = direction_out_lanes(b, &b->end, way);
     }
-    s.n = n;
-    s.gap = gap;
     s.along = tangential_lanes(way, n);
     s.shift = zero_lanes();
-    s.lambda = vec_not_negative(-inward) / (h * s.toward);
+    s.lambda = vec_not_negative(-s.inward) / (h * s.toward);
     s.failed = not_mask(s.presses) & s.presses;
     s.clear = not_mask(s.failed);
+    const real inverse = splat(1 / h);
     const real3 mean = times3(inverse, s.along);
     s.sliding.u0 = tangential_lanes(u, n);
     s.sliding.A = times3(splat(2), minus3(mean, s.sliding.u0));
@@ -445,7 +464,7 @@ SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, r
     s.sliding.sticks = s.failed;
     s.sliding.speed = length_lanes(s.sliding.u0);
     s.sliding.still = s.sliding.speed == 0;
-    find_friction(q, at, &there, h, &s);
+    find_friction(q, &there, h, &s);
     const lane_mask carried = s.sliding.sticks & (s.sliding.speed * h <= q->slop), free = s.presses & not_mask(carried);
     real3 d = zero_lanes(), change = d;
     if (any(free)) {
@@ -514,6 +533,15 @@ SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from,
     return (real3){to[0], to[1], to[2]};
 }
 
+/* The radius, and the factor of friction. */
+SPRING_NOINLINE void pick_surface(const resting_chunk *r, const picked_particles *l, real *radius, real *friction)
+{
+    *radius = pick(l, r->radius + r->first * r->radius_stride, r->radius_stride);
+    *friction = splat(1);
+    if (r->friction != NULL)
+        *friction = pick(l, r->friction + r->first, 1);
+}
+
 SPRING_NOINLINE void put_each(const picked_particles *l, const lane_mask *where, const real each[3], scalar *to,
                               size_t stride, uint32_t axes)
 {
@@ -557,77 +585,113 @@ SPRING_NOINLINE void leave_to_others(resting_chunk *r, unsigned c, const resting
     }
 }
 
-/* The step of particles that may touch collider c only: see rest_step. */
-SPRING_CONTACT_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+/* A kick of particles without contacts. */
+typedef struct kick_lanes {
+    real free[3]; /* [m/s^2] without drag */
+    real drag;    /* [1/s] */
+    bool dragged;
+    implicit_factors damping;
+} kick_lanes;
+
+SPRING_CONTACT_INLINE real3 end_of_kick(const scene_motion *m, const kick_lanes *k, real3 v0)
 {
-    const contact_body *const b = &r->setting->body[c];
+    real v[3] = {v0.x, v0.y, v0.z};
+    for (uint32_t a = 0; a < 3; a++) {
+        v[a] += m->kick * k->free[a];
+        v[a] = k->dragged ? implicit_velocity(v[a], &k->damping) : v[a];
+    }
+    return (real3){v[0], v[1], v[2]};
+}
+
+/* The free motion of a kick and a drift. */
+SPRING_CONTACT_INLINE void begin_kick_drift(const resting_chunk *r, const picked_particles *l, resting_lanes *q,
+                                            kick_lanes *k)
+{
     const scene_particles *const p = r->particles;
-    const scene_motion *const m = r->kick_drift;
+    const scene_motion *const m = r->step;
     const size_t first = r->first;
     const uint32_t axes = p->axes;
-    const scalar h = m->drift;
-    const bool dragged = p->drag != 0;
-    resting_lanes q;
     const real inverse_mass = pick(l, p->inverse_mass + first * p->mass_stride, p->mass_stride);
     const real3 force = pick3(l, r->kept->force, r->kept->force_stride, 1, axes);
     const real3 held = pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes);
+    const real pull[3] = {force.x + held.x, force.y + held.y, force.z + held.z};
+    k->dragged = p->drag != 0;
+    k->drag = p->drag * inverse_mass;
+    k->damping = (implicit_factors){splat(1), splat(0)};
+    if (k->dragged)
+        k->damping = implicit_factors_of(m->kick * k->drag);
+    for (uint32_t a = 0; a < 3; a++)
+        k->free[a] = a < axes ? inverse_mass * pull[a] + vec_load(p->gravity + a * padding) : splat(0);
+    if (m->ends_previous)
+        q->v0 = end_of_kick(m, k, q->v0);
+    const real v0[3] = {q->v0.x, q->v0.y, q->v0.z};
+    real w[3];
+    for (uint32_t a = 0; a < 3; a++)
+        w[a] = v0[a] + m->kick * (k->dragged ? k->free[a] - k->drag * v0[a] : k->free[a]);
+    q->w = (real3){w[0], w[1], w[2]};
+    q->d = times3(splat(m->drift), q->w);
+}
+
+/* The step of particles that may touch collider c only: see rest_step. A whole step counts as a drift with its mean
+   velocity between two kicks. */
+static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+{
+    const contact_body *const b = &r->setting->body[c];
+    const scene_particles *const p = r->particles;
+    const scene_motion *const m = r->step;
+    const size_t first = r->first;
+    const uint32_t axes = p->axes;
+    const bool whole = m->contacts == WHOLE_STEP_CONTACTS;
+    const scalar h = (scalar)r->setting->h;
+    kick_lanes kick = {.dragged = false};
+    resting_lanes q;
+    q.b = b;
     q.x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, axes);
     q.v0 = pick3(l, r->kept->v0[0], contact_chunk, 1, axes);
-    q.radius = pick(l, r->radius + first * r->radius_stride, r->radius_stride);
-    q.friction = splat(1);
-    if (r->friction != NULL)
-        q.friction = pick(l, r->friction + first, 1);
-    const real drag = p->drag * inverse_mass;
-    implicit_factors damping = {splat(1), splat(0)};
-    if (dragged)
-        damping = implicit_factors_of(m->kick * drag);
-    const real pull[3] = {force.x + held.x, force.y + held.y, force.z + held.z};
-    real free[3], v0[3] = {q.v0.x, q.v0.y, q.v0.z}, w[3];
-    for (uint32_t a = 0; a < 3; a++) {
-        free[a] = a < axes ? inverse_mass * pull[a] + vec_load(p->gravity + a * padding) : splat(0);
-        if (m->ends_previous) {
-            v0[a] += m->kick * free[a];
-            v0[a] = dragged ? implicit_velocity(v0[a], &damping) : v0[a];
-        }
-        const real accel = dragged ? free[a] - drag * v0[a] : free[a];
-        w[a] = v0[a] + m->kick * accel;
+    pick_surface(r, l, &q.radius, &q.friction);
+    real3 v_free = q.v0; /* of a whole step, at the end */
+    if (whole) {
+        v_free = pick3(l, m->v + first, p->stride, 1, axes);
+        q.d = minus3(pick3(l, m->x + first, p->stride, 1, axes), q.x0);
+        q.w = times3(splat(1 / h), q.d);
+    } else {
+        begin_kick_drift(r, l, &q, &kick);
     }
-    q.b = b;
-    q.v0 = (real3){v0[0], v0[1], v0[2]};
-    q.w = (real3){w[0], w[1], w[2]};
-    q.d = times3(splat(h), q.w);
+    const real3 x_free = plus3(q.x0, q.d);
     q.change = zero_lanes();
-    const real fastest = splat(m->max_speed);
-    lane_mask fine = (vec_abs(q.v0.x) <= fastest) & (vec_abs(q.v0.y) <= fastest) & (vec_abs(q.v0.z) <= fastest);
+    lane_mask fine = are_slow(&q.v0, m->max_speed);
     near_lanes at;
-    real3 y0, n;
+    real3 y0, way, n;
     real gap;
-    meet_lanes(&q, &at, &y0, &n, &gap);
+    meet_lanes(&q, &at, &y0, &way, &n, &gap);
     q.touching &= l->where;
     if (any(q.touching))
-        press_lanes(&q, &at, y0, n, gap, h);
+        press_lanes(&q, &at, y0, way, n, gap, h);
     fine &= l->where & not_mask(q.failed);
     const real3 x = plus3(q.x0, q.d);
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
     if (r->bounds->count > 1 && any(fine & q.touching))
         leave_to_others(r, c, &q, &fine);
-    const lane_mask done = fine & q.touching;
+    lane_mask done = fine & q.touching;
     if (!any(done))
         return fine;
-    if (m->predicted != NULL) {
-        const real w_end[3] = {q.w.x, q.w.y, q.w.z};
-        real end[3];
-        for (uint32_t a = 0; a < 3; a++) {
-            end[a] = w_end[a] + m->kick * free[a];
-            end[a] = dragged ? implicit_velocity(end[a], &damping) : end[a];
-        }
-        real3 predicted = {end[0], end[1], end[2]};
+    real3 v = q.w;
+    if (whole) {
+        v = plus3(v_free, q.change);
+        stop_lanes(b, &b->end, &x, &q.radius, &q.friction, q.touching, &v);
+        q.change = minus3(v, v_free);
+        fine &= are_slow(&v, m->max_speed);
+        done &= fine;
+    } else if (m->predicted != NULL) {
+        real3 predicted = end_of_kick(m, &kick, v);
         stop_lanes(b, &b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
         put3(l, &done, &predicted, m->predicted + first, p->stride, axes);
     }
     put3(l, &done, &x, m->x + first, p->stride, axes);
-    put3(l, &done, &q.w, m->v + first, p->stride, axes);
+    put3(l, &done, &v, m->v + first, p->stride, axes);
     put3(l, &done, &q.change, r->change, contact_chunk, 3);
+    if (whole)
+        put3(l, &done, &x_free, r->kept->x0[0], contact_chunk, axes);
     uint32_t touches[lanes];
     store_bits(touches, bits_where(done, 1));
     for (size_t j = 0; j < lanes; j++)
@@ -636,23 +700,50 @@ SPRING_CONTACT_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_
     return fine;
 }
 
-SPRING_CONTACT_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
-    const scene_motion *const m = r->kick_drift;
+    const scene_motion *const m = r->step;
     const real3 x = pick3(l, r->place, p->stride, 1, p->axes);
     const real3 kicked = pick3(l, m->v + r->first, p->stride, 1, p->axes);
-    const real radius = pick(l, r->radius + r->first * r->radius_stride, r->radius_stride),
-               fastest = splat(m->max_speed);
-    const real friction = r->friction != NULL ? pick(l, r->friction + r->first, 1) : splat(1);
+    real radius, friction;
+    pick_surface(r, l, &radius, &friction);
     real3 v = kicked;
     stop_lanes(b, r->at_end ? &b->end : &b->start, &x, &radius, &friction, l->where, &v);
-    const lane_mask fine = l->where & (vec_abs(v.x) <= fastest) & (vec_abs(v.y) <= fastest) & (vec_abs(v.z) <= fastest);
+    const lane_mask fine = l->where & are_slow(&v, m->max_speed);
     const real3 change = minus3(v, kicked);
     put3(l, &fine, &v, m->v + r->first, p->stride, p->axes);
     put3(l, &fine, &change, r->change, contact_chunk, 3);
     return fine;
+}
+
+/* Particles that touch collider c at the start of the step press on it if they do not leave it and their residual
+   points into it. */
+static lane_mask press_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+{
+    const contact_body *const b = &r->setting->body[c];
+    const scene_particles *const p = r->particles;
+    const scene_motion *const m = r->step;
+    const real3 x = pick3(l, r->place, p->stride, 1, p->axes), v = pick3(l, m->v0 + r->first, p->stride, 1, p->axes),
+                residual = pick3(l, m->v + r->first, p->stride, 1, p->axes);
+    real radius, friction;
+    pick_surface(r, l, &radius, &friction);
+    real3 normal, velocity;
+    surface_lanes(b, &b->start, &x, &radius, &normal, &velocity);
+    const real3 u = minus3(v, velocity), sliding = tangential_lanes(u, normal);
+    const real3 free = tangential_lanes(residual, normal);
+    const real pressed = -dot3(residual, normal), limit = (scalar)b->friction * friction * pressed;
+    const real rounding = 64 * SCALAR_EPSILON * (sum_of_sizes(v) + sum_of_sizes(velocity));
+    const lane_mask presses = l->where & (pressed > 0) & not_mask(dot3(u, normal) > rounding);
+    const lane_mask holds =
+        presses & (dot3(sliding, sliding) <= rounding * rounding) & (dot3(free, free) <= limit * limit);
+    put3(l, &presses, &normal, r->change, contact_chunk, 3);
+    uint32_t how[lanes];
+    store_bits(how, bits_where(presses, RESTS_PRESSED) | bits_where(holds, RESTS_HELD));
+    for (size_t j = 0; j < lanes; j++)
+        r->done[l->place[j]] |= how[j];
+    return l->where;
 }
 
 /* Computes the contact of some particles with collider c, their only candidate. Returns the lanes whose motion is
@@ -684,7 +775,7 @@ SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, const uint8_t *list
     l->where = first_lanes(*k - first);
 }
 
-SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
+SPRING_NOINLINE void for_each_candidate(resting_chunk *r, rest_step *step)
 {
     uint32_t single = 0;
     for (size_t k = 0; k < r->listed; k++) {
@@ -715,6 +806,11 @@ SPRING_CONTACT_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
 static void stop_touching(resting_chunk *r)
 {
     for_each_candidate(r, stop_on_collider);
+}
+
+static void press_touching(resting_chunk *r)
+{
+    for_each_candidate(r, press_on_collider);
 }
 
 static void advance_resting(resting_chunk *r)

@@ -228,13 +228,16 @@ typedef bool particle_kernel(const scene_particles *, const scene_motion *, size
 /* Copies x0, v0 and force of particles first ... first + contact_chunk - 1, and further ones of the padding. */
 typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t first, size_t count, kept_motion *);
 
+/* 1: the result is complete. Of find_pressing also how a particle presses on its collider. */
+typedef enum rest_result { RESTS_DONE = 1, RESTS_PRESSED = 2, RESTS_HELD = 4 } rest_result;
+
 /* Particles first ... first + count - 1 of a motion that may touch colliders. */
 typedef struct resting_chunk {
     const contact_setting *setting;
     const collider_bounds *bounds;
     const scene_particles *particles;
-    const scene_motion *kick_drift; /* of stop_resting: a kick; of find_near: any motion */
-    const kept_motion *kept;
+    const scene_motion *step; /* of stop_resting: a kick; of move_resting: kick_drift, or a whole step */
+    kept_motion *kept;
     const scalar *radius, *friction; /* of particles: [m], of all if radius_stride is 0; NULL: 1 */
     size_t radius_stride, first, count;
     scalar *clearance;   /* [m] by collider: see contact_near_tmpl.h */
@@ -246,7 +249,7 @@ typedef struct resting_chunk {
     uint32_t listed;     /* particles with a candidate */
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
-    uint32_t done[contact_chunk];      /* 1: the motion is complete */
+    uint32_t done[contact_chunk];      /* bits of rest_result */
     uint32_t *touched;                 /* by particle: the bit of the collider that it touches is added */
     scalar *change;                    /* [3][contact_chunk] [m/s] written: by the contact; may be kept.force_copy */
 } resting_chunk;
@@ -255,8 +258,10 @@ typedef struct resting_chunk {
    there is a candidate. */
 typedef bool near_kernel(resting_chunk *);
 
-/* For particles with one candidate. stop_resting completes a kick: it writes v, done and change. move_resting completes
-   motions of particles that rest or slide: it writes x, v, predicted, done, touched and change. */
+/* For particles with one candidate; they set `done`. stop_resting completes a kick: it writes v and change. move_resting completes
+   motions of particles that rest or slide: it writes x, v, predicted, touched and change. Of a whole step it also
+   writes x of the motion without contacts, to kept.x0. find_pressing finds particles that press on their collider at the
+   start of a step, where v of the step is their residual; it writes their normals to change. */
 typedef void rest_kernel(resting_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
@@ -286,7 +291,7 @@ typedef struct common_kernels {
     stretch_kernel *stretched;            /* see above */
     keep_kernel *keep_motion;             /* see above */
     near_kernel *find_near;
-    rest_kernel *stop_resting, *move_resting;
+    rest_kernel *stop_resting, *move_resting, *find_pressing;
 } common_kernels;
 
 /* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain

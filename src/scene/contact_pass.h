@@ -255,12 +255,12 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
 
 /* Prepares the arguments of a rest_kernel for a chunk of particles. */
 static void begin_rest(const spring_scene *s, const scene_contacts *t, const scene_particles *p, const scene_motion *m,
-                       const kept_motion *kept, size_t from, size_t count, resting_chunk *r)
+                       kept_motion *kept, size_t from, size_t count, resting_chunk *r)
 {
     r->setting = &t->setting;
     r->bounds = t->bounds;
     r->particles = p;
-    r->kick_drift = m;
+    r->step = m;
     r->kept = kept;
     r->radius = t->radius;
     r->friction = scene_read(s, ARRAY_FRICTION);
@@ -269,6 +269,19 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
     r->count = count;
     r->clearance = t->clearance + from / contact_chunk * clearance_stride(t->setting.count);
     r->begins = t->begins;
+}
+
+/* Lists particles that touch colliders. Returns their number. */
+static inline uint32_t list_touching(resting_chunk *r, const uint32_t *touched)
+{
+    memset(r->done, 0, sizeof r->done);
+    memcpy(r->candidate, touched, r->count * sizeof *touched);
+    r->listed = 0;
+    for (size_t k = 0; k < r->count; k++) {
+        r->list[r->listed] = (uint8_t)k;
+        r->listed += touched[k] != 0;
+    }
+    return r->listed;
 }
 
 /* The kick that ends a step, of a chunk of particles, some of which touch colliders at x. */
@@ -281,16 +294,10 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     const bool fine = kernel(p, m, from, from + count); /* otherwise stops may remove what is too fast */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
-    memset(r.done, 0, sizeof r.done);
-    r.listed = 0;
-    for (size_t k = 0; k < count; k++) {
-        r.list[r.listed] = (uint8_t)k;
-        r.listed += touched[k] != 0;
-    }
+    list_touching(&r, touched);
     if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
         r.place = x + from;
         r.at_end = at_end;
-        memcpy(r.candidate, touched, count * sizeof *touched);
         filter_candidates(s, t, &r);
         kernels->stop_resting(&r);
         add_impulses(s, t, &r, r.done, r.place, p->stride, NULL, NULL);
@@ -332,7 +339,8 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
         return true;
     memset(r.done, 0, sizeof r.done);
     filter_candidates(s, t, &r);
-    if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
+    const bool rests = m->contacts == KICK_DRIFT_CONTACTS || m->contacts == WHOLE_STEP_CONTACTS;
+    if (rests && t->setting.h > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
         kernels->move_resting(&r);
         add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk, m->x + from, m->v + from);

@@ -44,7 +44,7 @@
 
 #include <math.h>
 
-/* The time of a step is that of its kernels. */
+/* Steps spend most of their time in kernels, and in the functions for pressed particles that are compiled for speed. */
 #include "../simd/size_begin.h"
 
 /* ------------------------------------------------------------------------------------------------ pressed particles */
@@ -128,48 +128,78 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
                                    load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon, surface);
 }
 
-/* Finds the pressed particles, and takes their loads out of the residual. */
+/* Particle i, which touches several colliders, or one whose surface moves in its frame. Returns whether it is pressed. */
+SPRING_NOINLINE bool press(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
+{
+    const uint32_t axes = s->particles.axes;
+    bool pressed = false;
+    contact_surface surface[most_surfaces];
+    const unsigned surfaces = surfaces_at(s, s->contacts.before[i], i, false, s->whole.x0, surface);
+    for (unsigned k = 0; k < surfaces; k++) {
+        scalar normal[3] = {0};
+        const pressing how = pressing_of(s, &surface[k], i, residual, normal);
+        if (how == NOT_PRESSED)
+            continue;
+        if (pressed)
+            add_normal(p, axes, normal);
+        else
+            *p = (pressed_particle){.line = {normal[0], normal[1], normal[2]}, .collider = surface[k].index};
+        for (uint32_t a = 0; a < axes; a++)
+            p->outwards[a] += normal[a];
+        if (how == PRESSED_AND_HELD)
+            p->freedom = HELD;
+        pressed = true;
+    }
+    return pressed;
+}
+
+/* Finds the pressed particles of a chunk, and takes their loads out of the residual, v of this motion. */
+SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *m, size_t from, pressed_list *found)
+{
+    resting_chunk r;
+    scalar normal[3][contact_chunk];
+    const uint32_t *const before = s->contacts.before + from;
+    const size_t left = s->particles.count - from, stride = s->scene->layout.stride;
+    const uint32_t axes = s->particles.axes;
+    begin_rest(s->scene, &s->contacts, &s->particles, m, NULL, from, left < contact_chunk ? left : contact_chunk, &r);
+    if (list_touching(&r, before) == 0)
+        return;
+    r.change = normal[0];
+    r.place = m->x0 + from;
+    filter_candidates(s->scene, &s->contacts, &r);
+    s->kernels->common->find_pressing(&r);
+    for (uint32_t l = 0; l < r.listed; l++) {
+        const size_t k = r.list[l], i = from + k;
+        pressed_particle *const p = &found->list[found->count];
+        if ((r.done[k] & RESTS_PRESSED) != 0) {
+            *p = (pressed_particle){.freedom = (r.done[k] & RESTS_HELD) != 0 ? HELD : FREE_IN_PLANE};
+            for (uint32_t a = 0; a < axes; a++)
+                p->line[a] = p->outwards[a] = normal[a][k];
+            while (before[k] != UINT32_C(1) << p->collider)
+                p->collider++;
+        } else if (r.done[k] != 0 || !press(s, i, m->v, p)) {
+            continue;
+        }
+        p->particle = (uint32_t)i;
+        scalar free[3];
+        for (uint32_t a = 0; a < axes; a++)
+            free[a] = m->v[a * stride + i];
+        free_component(p, axes, free);
+        for (uint32_t a = 0; a < axes; a++) {
+            p->load[a] = p->removed[a] = m->v[a * stride + i] - free[a];
+            m->v[a * stride + i] = free[a];
+        }
+        found->count++;
+    }
+}
+
 static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
 {
     pressed_list found = {.list = scene_memory(s->scene, ARRAY_PRESSED)};
-    const uint32_t axes = s->particles.axes;
-    const size_t stride = s->scene->layout.stride;
-    for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i++) {
-        if (s->contacts.before[i] == 0)
-            continue;
-        pressed_particle *const p = &found.list[found.count];
-        bool pressed = false;
-        contact_surface surface[most_surfaces];
-        const unsigned surfaces = surfaces_at(s, s->contacts.before[i], i, false, s->whole.x0, surface);
-        for (unsigned k = 0; k < surfaces; k++) {
-            scalar normal[3] = {0};
-            const pressing how = pressing_of(s, &surface[k], i, residual, normal);
-            if (how == NOT_PRESSED)
-                continue;
-            if (pressed)
-                add_normal(p, axes, normal);
-            else
-                *p = (pressed_particle){
-                    .particle = (uint32_t)i, .line = {normal[0], normal[1], normal[2]}, .collider = surface[k].index};
-            for (uint32_t a = 0; a < axes; a++)
-                p->outwards[a] += normal[a];
-            if (how == PRESSED_AND_HELD)
-                p->freedom = HELD;
-            pressed = true;
-        }
-        if (!pressed)
-            continue;
-        scalar free[3];
-        for (uint32_t a = 0; a < axes; a++)
-            free[a] = residual[a * stride + i];
-        free_component(p, axes, free);
-        for (uint32_t a = 0; a < axes; a++) {
-            p->load[a] = residual[a * stride + i] - free[a];
-            p->removed[a] = p->load[a];
-            residual[a * stride + i] = free[a];
-        }
-        found.count++;
-    }
+    scene_motion start = s->whole;
+    start.v = residual;
+    for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i += contact_chunk)
+        find_pressed_from(s, &start, i, &found);
     return found;
 }
 
@@ -242,7 +272,7 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
 
 /* Reduces the velocities with which particles leave colliders with restitution. The kick before this impact has not
    damped them, and the next would be too late: a body would bounce in every step, and gain elastic energy. */
-static inline void damp_bounces(const scene_step *s)
+SPRING_NOINLINE void damp_bounces(const scene_step *s)
 {
     const scalar *const left = scene_read(s->scene, ARRAY_SUMS);
     const size_t stride = s->scene->layout.stride;
