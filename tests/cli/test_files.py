@@ -112,13 +112,13 @@ def ended_by(older, *numbers, times=1):
         for number in numbers:
             signal.signal(number, signal.SIG_DFL)
     with subprocess.Popen([ENERGY, '--method', 'rk4', '--duration', '1e9', '-o', older], preexec_fn=prepare) as process:
-        patience = time.monotonic() + 20
+        patience = time.monotonic() + 60
         while len(os.listdir(older.parent)) < 2 and time.monotonic() < patience:
             time.sleep(0.001)
         begun = len(os.listdir(older.parent))
         for number in numbers * times:
             os.kill(process.pid, number)  # not send_signal(), which looks first whether the process has ended
-        status = process.wait(20)
+        status = process.wait(60)
     assert (begun, files(older.parent)) == (2, {'old.tsv': 'older\n'})
     return status
 
@@ -141,7 +141,7 @@ def test_ignored_signal_stays_ignored(tmp_path):
     with subprocess.Popen([RUN, *SHORT[RUN], '--steps', '3e6', '--every', '1000', '-o', tmp_path / 'new.tsv'],
                           preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) as process:
         process.send_signal(signal.SIGHUP)
-        assert process.wait(20) == 0
+        assert process.wait(60) == 0
     assert list(files(tmp_path)) == ['new.tsv']
 
 
@@ -189,7 +189,7 @@ def through_fifo(folder, tool, *args, **how):
     os.mkfifo(fifo)
     with subprocess.Popen(['cat', fifo], stdout=subprocess.PIPE, text=True) as reader:
         result = run(tool, *args, '-o', fifo, **how)
-        return result.returncode, reader.communicate(timeout=20)[0]
+        return result.returncode, reader.communicate(timeout=60)[0]
 
 
 def test_fifo(tmp_path):

@@ -248,7 +248,7 @@ def test_progress_on_a_terminal(terminal):
 
 def test_time_left_on_a_terminal(terminal):
     """As soon as there is an estimate, and none before."""
-    seen, patience = '', time.monotonic() + 30
+    seen, patience = '', time.monotonic() + 60
     with subprocess.Popen([ENERGY, '--method', 'rk4'], stdout=subprocess.DEVNULL, stderr=terminal[1]) as process:
         while 'left' not in seen and time.monotonic() < patience:
             seen += os.read(terminal[0], 4096).decode()

@@ -50,7 +50,7 @@ NOT_WHOLE = r'a duration of \S+ s is not a whole number of steps of \S+ s: the r
 
 
 def run(tool, *args, **how):
-    how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 60, **how}
+    how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 200, **how}
     return subprocess.run([tool, *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
 
 

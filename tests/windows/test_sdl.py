@@ -128,7 +128,7 @@ def test_trouble_is_told_and_cured(screen, scene, method, cure):
 
 def test_steps_above_the_stable_step_are_marked(screen):
     with running(screen, '--scene', 'rope') as window:
-        assert GREEN in screen.picture(window).colors(SETTINGS)
+        assert wait(screen, window, lambda picture: GREEN in picture.colors(SETTINGS))
         press(screen, window, *['Down'] * 12)
         assert wait(screen, window, lambda picture: AMBER in picture.colors(SETTINGS))
 
