@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Particles that rest or slide on one collider during a step of leapfrog: the frequent case of scene/contact.c, on SIMD
- * vectors, in the precision of the scene. contact.c has the formulas and the symbols.
+ * Particles that rest or slide on one collider during a step: the frequent case of scene/contact.c, on SIMD vectors, in
+ * the precision of the scene. contact.c has the formulas and the symbols.
  *
  * Method    Particles whose path may touch one collider only are taken together. Where the contact begins at the start of
  *           the step, the last kick of the previous step, the impact (step 3), pressing from the start (step 4) and
@@ -189,8 +189,8 @@ SPRING_CONTACT_INLINE real3 body_velocity(const contact_body *b, const body_pose
 }
 
 /* The normal of the surface at x, where it touches, and the velocity of the body there. */
-SPRING_NOINLINE void surface_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
-                                   real3 *normal, real3 *velocity)
+SPRING_CONTACT_INLINE void surface_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
+                                         real3 *normal, real3 *velocity)
 {
     near_lanes at;
     if (b->shape == SPRING_CAPSULE) { /* not in its frame, which begins anew in each step */
@@ -534,7 +534,7 @@ SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from,
 }
 
 /* The radius, and the factor of friction. */
-SPRING_NOINLINE void pick_surface(const resting_chunk *r, const picked_particles *l, real *radius, real *friction)
+SPRING_CONTACT_INLINE void pick_surface(const resting_chunk *r, const picked_particles *l, real *radius, real *friction)
 {
     *radius = pick(l, r->radius + r->first * r->radius_stride, r->radius_stride);
     *friction = splat(1);
@@ -585,118 +585,127 @@ SPRING_NOINLINE void leave_to_others(resting_chunk *r, unsigned c, const resting
     }
 }
 
-/* A kick of particles without contacts. */
-typedef struct kick_lanes {
-    real free[3]; /* [m/s^2] without drag */
-    real drag;    /* [1/s] */
-    bool dragged;
-    implicit_factors damping;
-} kick_lanes;
-
-SPRING_CONTACT_INLINE real3 end_of_kick(const scene_motion *m, const kick_lanes *k, real3 v0)
+SPRING_CONTACT_INLINE void begin_resting(const resting_chunk *r, const picked_particles *l, unsigned c,
+                                         resting_lanes *q)
 {
-    real v[3] = {v0.x, v0.y, v0.z};
-    for (uint32_t a = 0; a < 3; a++) {
-        v[a] += m->kick * k->free[a];
-        v[a] = k->dragged ? implicit_velocity(v[a], &k->damping) : v[a];
-    }
-    return (real3){v[0], v[1], v[2]};
+    q->b = &r->setting->body[c];
+    q->x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, r->particles->axes);
+    q->v0 = pick3(l, r->kept->v0[0], contact_chunk, 1, r->particles->axes);
+    pick_surface(r, l, &q->radius, &q->friction);
 }
 
-/* The free motion of a kick and a drift. */
-SPRING_CONTACT_INLINE void begin_kick_drift(const resting_chunk *r, const picked_particles *l, resting_lanes *q,
-                                            kick_lanes *k)
+/* The steps 1 to 4, and 5 for other colliders. Returns the lanes that have a valid result. */
+SPRING_NOINLINE lane_mask rest_lanes(resting_chunk *r, const picked_particles *l, unsigned c, resting_lanes *q)
+{
+    const scalar h = (scalar)r->setting->h;
+    lane_mask fine = l->where & are_slow(&q->v0, r->step->max_speed);
+    near_lanes at;
+    real3 y0, way, n;
+    real gap;
+    q->change = zero_lanes();
+    meet_lanes(q, &at, &y0, &way, &n, &gap);
+    q->touching &= l->where;
+    if (any(q->touching))
+        press_lanes(q, &at, y0, way, n, gap, h);
+    const real3 x = plus3(q->x0, q->d);
+    fine &= not_mask(q->failed) & not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
+    if (r->bounds->count > 1 && any(fine & q->touching))
+        leave_to_others(r, c, q, &fine);
+    return fine;
+}
+
+/* Writes the results of lanes that touch collider c. */
+SPRING_NOINLINE void finish_resting(resting_chunk *r, const picked_particles *l, unsigned c, const lane_mask *done,
+                                    const resting_lanes *q, const real3 *x, const real3 *v)
+{
+    const scene_particles *const p = r->particles;
+    put3(l, done, x, r->step->x + r->first, p->stride, p->axes);
+    put3(l, done, v, r->step->v + r->first, p->stride, p->axes);
+    put3(l, done, &q->change, r->change, contact_chunk, 3);
+    uint32_t touches[lanes];
+    store_bits(touches, bits_where(*done, 1));
+    for (size_t j = 0; j < lanes; j++)
+        if (touches[j] != 0)
+            r->touched[r->first + l->place[j]] = UINT32_C(1) << c;
+}
+
+/* A kick and a drift of particles that may touch collider c only: see rest_step. */
+static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
     const size_t first = r->first;
     const uint32_t axes = p->axes;
+    const bool dragged = p->drag != 0, implicit = m->contacts == IMPLICIT_KICK_DRIFT_CONTACTS;
+    resting_lanes q;
     const real inverse_mass = pick(l, p->inverse_mass + first * p->mass_stride, p->mass_stride);
     const real3 force = pick3(l, r->kept->force, r->kept->force_stride, 1, axes);
     const real3 held = pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes);
     const real pull[3] = {force.x + held.x, force.y + held.y, force.z + held.z};
-    k->dragged = p->drag != 0;
-    k->drag = p->drag * inverse_mass;
-    k->damping = (implicit_factors){splat(1), splat(0)};
-    if (k->dragged)
-        k->damping = implicit_factors_of(m->kick * k->drag);
-    for (uint32_t a = 0; a < 3; a++)
-        k->free[a] = a < axes ? inverse_mass * pull[a] + vec_load(p->gravity + a * padding) : splat(0);
-    if (m->ends_previous)
-        q->v0 = end_of_kick(m, k, q->v0);
-    const real v0[3] = {q->v0.x, q->v0.y, q->v0.z};
-    real w[3];
-    for (uint32_t a = 0; a < 3; a++)
-        w[a] = v0[a] + m->kick * (k->dragged ? k->free[a] - k->drag * v0[a] : k->free[a]);
-    q->w = (real3){w[0], w[1], w[2]};
-    q->d = times3(splat(m->drift), q->w);
-}
-
-/* The step of particles that may touch collider c only: see rest_step. A whole step counts as a drift with its mean
-   velocity between two kicks. */
-static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
-{
-    const contact_body *const b = &r->setting->body[c];
-    const scene_particles *const p = r->particles;
-    const scene_motion *const m = r->step;
-    const size_t first = r->first;
-    const uint32_t axes = p->axes;
-    const bool whole = m->contacts == WHOLE_STEP_CONTACTS;
-    const scalar h = (scalar)r->setting->h;
-    kick_lanes kick = {.dragged = false};
-    resting_lanes q;
-    q.b = b;
-    q.x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, axes);
-    q.v0 = pick3(l, r->kept->v0[0], contact_chunk, 1, axes);
-    pick_surface(r, l, &q.radius, &q.friction);
-    real3 v_free = q.v0; /* of a whole step, at the end */
-    if (whole) {
-        v_free = pick3(l, m->v + first, p->stride, 1, axes);
-        q.d = minus3(pick3(l, m->x + first, p->stride, 1, axes), q.x0);
-        q.w = times3(splat(1 / h), q.d);
-    } else {
-        begin_kick_drift(r, l, &q, &kick);
+    begin_resting(r, l, c, &q);
+    const real drag = p->drag * inverse_mass;
+    implicit_factors damping = {splat(1), splat(0)};
+    if (dragged)
+        damping = implicit_factors_of(m->kick * drag);
+    real free[3], v0[3] = {q.v0.x, q.v0.y, q.v0.z}, w[3];
+    for (uint32_t a = 0; a < 3; a++) {
+        free[a] = a < axes ? inverse_mass * pull[a] + vec_load(p->gravity + a * padding) : splat(0);
+        if (m->ends_previous) {
+            v0[a] += m->kick * free[a];
+            v0[a] = dragged ? implicit_velocity(v0[a], &damping) : v0[a];
+        }
+        if (implicit) {
+            w[a] = v0[a] + m->kick * free[a];
+            w[a] = dragged ? implicit_velocity(w[a], &damping) : w[a];
+            continue;
+        }
+        const real accel = dragged ? free[a] - drag * v0[a] : free[a];
+        w[a] = v0[a] + m->kick * accel;
     }
-    const real3 x_free = plus3(q.x0, q.d);
-    q.change = zero_lanes();
-    lane_mask fine = are_slow(&q.v0, m->max_speed);
-    near_lanes at;
-    real3 y0, way, n;
-    real gap;
-    meet_lanes(&q, &at, &y0, &way, &n, &gap);
-    q.touching &= l->where;
-    if (any(q.touching))
-        press_lanes(&q, &at, y0, way, n, gap, h);
-    fine &= l->where & not_mask(q.failed);
-    const real3 x = plus3(q.x0, q.d);
-    fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
-    if (r->bounds->count > 1 && any(fine & q.touching))
-        leave_to_others(r, c, &q, &fine);
-    lane_mask done = fine & q.touching;
+    q.v0 = (real3){v0[0], v0[1], v0[2]};
+    q.w = (real3){w[0], w[1], w[2]};
+    q.d = times3(splat(m->drift), q.w);
+    const lane_mask fine = rest_lanes(r, l, c, &q), done = fine & q.touching;
     if (!any(done))
         return fine;
-    real3 v = q.w;
-    if (whole) {
-        v = plus3(v_free, q.change);
-        stop_lanes(b, &b->end, &x, &q.radius, &q.friction, q.touching, &v);
-        q.change = minus3(v, v_free);
-        fine &= are_slow(&v, m->max_speed);
-        done &= fine;
-    } else if (m->predicted != NULL) {
-        real3 predicted = end_of_kick(m, &kick, v);
-        stop_lanes(b, &b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
+    const real3 x = plus3(q.x0, q.d);
+    if (m->predicted != NULL) {
+        const real w_end[3] = {q.w.x, q.w.y, q.w.z};
+        real end[3];
+        for (uint32_t a = 0; a < 3; a++) {
+            end[a] = w_end[a] + m->kick * free[a];
+            end[a] = dragged ? implicit_velocity(end[a], &damping) : end[a];
+        }
+        real3 predicted = {end[0], end[1], end[2]};
+        stop_lanes(q.b, &q.b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
         put3(l, &done, &predicted, m->predicted + first, p->stride, axes);
     }
-    put3(l, &done, &x, m->x + first, p->stride, axes);
-    put3(l, &done, &v, m->v + first, p->stride, axes);
-    put3(l, &done, &q.change, r->change, contact_chunk, 3);
-    if (whole)
-        put3(l, &done, &x_free, r->kept->x0[0], contact_chunk, axes);
-    uint32_t touches[lanes];
-    store_bits(touches, bits_where(done, 1));
-    for (size_t j = 0; j < lanes; j++)
-        if (touches[j] != 0)
-            r->touched[first + l->place[j]] = UINT32_C(1) << c;
+    finish_resting(r, l, c, &done, &q, &x, &q.w);
+    return fine;
+}
+
+/* The same for a whole step: it counts as a drift with its mean velocity between two kicks. */
+static lane_mask rest_in_whole_step(resting_chunk *r, const picked_particles *l, unsigned c)
+{
+    const scene_particles *const p = r->particles;
+    const scene_motion *const m = r->step;
+    resting_lanes q;
+    begin_resting(r, l, c, &q);
+    const real3 v_free = pick3(l, m->v + r->first, p->stride, 1, p->axes);
+    const real3 x_free = pick3(l, m->x + r->first, p->stride, 1, p->axes);
+    q.d = minus3(x_free, q.x0);
+    q.w = times3(splat(1 / (scalar)r->setting->h), q.d);
+    lane_mask fine = rest_lanes(r, l, c, &q);
+    if (!any(fine & q.touching))
+        return fine;
+    const real3 x = plus3(q.x0, q.d);
+    real3 v = plus3(v_free, q.change);
+    stop_lanes(q.b, &q.b->end, &x, &q.radius, &q.friction, q.touching, &v);
+    q.change = minus3(v, v_free);
+    fine &= are_slow(&v, m->max_speed);
+    const lane_mask done = fine & q.touching;
+    finish_resting(r, l, c, &done, &q, &x, &v);
+    put3(l, &done, &x_free, r->kept->x0[0], contact_chunk, p->axes);
     return fine;
 }
 
@@ -815,7 +824,7 @@ static void press_touching(resting_chunk *r)
 
 static void advance_resting(resting_chunk *r)
 {
-    for_each_candidate(r, rest_on_collider);
+    for_each_candidate(r, r->step->contacts == WHOLE_STEP_CONTACTS ? rest_in_whole_step : rest_on_collider);
 }
 
 #endif

@@ -236,7 +236,7 @@ typedef struct resting_chunk {
     const contact_setting *setting;
     const collider_bounds *bounds;
     const scene_particles *particles;
-    const scene_motion *step; /* of stop_resting: a kick; of move_resting: kick_drift, or a whole step */
+    const scene_motion *step; /* of stop_resting: a kick; of find_near and move_resting: any motion */
     kept_motion *kept;
     const scalar *radius, *friction; /* of particles: [m], of all if radius_stride is 0; NULL: 1 */
     size_t radius_stride, first, count;

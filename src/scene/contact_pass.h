@@ -187,6 +187,20 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
     c->c.x0 = vector_from(c->x0);
 }
 
+/* Advances particle i, in place k of the chunk. nearby: as in contact_particle; *way becomes at least the length of its
+   path */
+SPRING_NOINLINE bool advance_alone(const spring_scene *s, const scene_contacts *t, const scene_particles *p,
+                                   const scene_motion *m, const kept_motion *kept, size_t i, size_t k, uint32_t nearby,
+                                   double *way)
+{
+    contact_state q;
+    prepare_state(s, p, m, kept, i, k, &q);
+    q.c.nearby = nearby;
+    const bool fine = advance_in_contact(t, p, m, i, &q);
+    *way = fmax(*way, fabs(q.c.d.x) + fabs(q.c.d.y) + fabs(q.c.d.z));
+    return fine;
+}
+
 /* Removes candidates that masks exclude, and all candidates of pinned particles. */
 static void filter_candidates(const spring_scene *s, const scene_contacts *t, resting_chunk *r)
 {
@@ -339,8 +353,7 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
         return true;
     memset(r.done, 0, sizeof r.done);
     filter_candidates(s, t, &r);
-    const bool rests = m->contacts == KICK_DRIFT_CONTACTS || m->contacts == WHOLE_STEP_CONTACTS;
-    if (rests && t->setting.h > 0 && fine) { /* particles that rest or slide on one collider */
+    if (t->setting.h > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
         kernels->move_resting(&r);
         add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk, m->x + from, m->v + from);
@@ -356,11 +369,8 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
-        contact_state q;
-        prepare_state(s, p, m, &kept, i, k, &q);
-        q.c.nearby = fine ? r.candidate[k] : UINT32_MAX;
-        all_fine = advance_in_contact(t, p, m, i, &q) && all_fine;
-        way = fmax(way, fabs(q.c.d.x) + fabs(q.c.d.y) + fabs(q.c.d.z));
+        const uint32_t nearby = fine ? r.candidate[k] : UINT32_MAX;
+        all_fine = advance_alone(s, t, p, m, &kept, i, k, nearby, &way) && all_fine;
     }
     for (unsigned c = 0; c < t->setting.count && way > (double)r.way; c++) /* contacts made paths longer */
         r.clearance[c] -= (scalar)(rounded_up * way);

@@ -8,24 +8,16 @@
 #include "pass.h"
 #include "weighted_links.h"
 
-/* The least limit of a link; NaN if one is negative or NaN. Four independent minima overlap their latencies. */
+/* The least limit of a link; NaN if one is negative or NaN. */
 static double least_limit(const double *limit, size_t links)
 {
-    enum { some = 4 };
-    double least[some] = {(double)INFINITY, (double)INFINITY, (double)INFINITY, (double)INFINITY};
+    double least = (double)INFINITY;
     bool valid = true;
-    for (size_t i = 0; i < links / some * some; i += some) {
-        SPRING_UNROLL
-        for (size_t k = 0; k < some; k++) {
-            valid &= limit[i + k] >= 0;
-            least[k] = limit[i + k] < least[k] ? limit[i + k] : least[k];
-        }
-    }
-    for (size_t i = links / some * some; i < links; i++) {
+    for (size_t i = 0; i < links; i++) {
         valid &= limit[i] >= 0;
-        least[0] = fmin(limit[i], least[0]);
+        least = limit[i] < least ? limit[i] : least;
     }
-    return valid ? fmin(fmin(least[0], least[1]), fmin(least[2], least[3])) : (double)NAN;
+    return valid ? least : (double)NAN;
 }
 
 /* With one axis the length has the sign of the link. */

@@ -24,8 +24,9 @@
 #endif
 
 /* Before a loop whose arrays should be kept in registers. For RISC-V without vectors, clang does not unroll such a
-   loop, and warns. */
-#if defined(__clang__) && defined(__riscv) && !defined(__riscv_vector)
+   loop, and warns. A build for size may define it as nothing. */
+#if defined(SPRING_UNROLL)
+#elif defined(__clang__) && defined(__riscv) && !defined(__riscv_vector)
 #define SPRING_UNROLL
 #elif defined(__clang__)
 #define SPRING_UNROLL _Pragma("clang loop unroll(full)")
