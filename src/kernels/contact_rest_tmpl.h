@@ -6,8 +6,8 @@
  * Method    Particles whose path may touch one collider only are taken together. Where the contact begins at the start of
  *           the step, the last kick of the previous step, the impact (step 3), pressing from the start (step 4) and
  *           friction are computed here. All other particles are left to contact.c: contacts that begin within the step,
- *           particles inside a collider, corners, custom bodies, and surfaces that move in the frame of their body. The
- *           choice depends on the particle only, so results do not depend on the vector width.
+ *           particles inside a collider, corners, custom bodies, surfaces that move in the frame of their body, and negative
+ *           steps. The choice depends on the particle only, so results do not depend on the vector width.
  */
 #ifndef SPRINGSTEP_CONTACT_REST_TMPL_H
 #define SPRINGSTEP_CONTACT_REST_TMPL_H
@@ -594,7 +594,7 @@ SPRING_CONTACT_INLINE void begin_resting(const resting_chunk *r, const picked_pa
     pick_surface(r, l, &q->radius, &q->friction);
 }
 
-/* The steps 1 to 4, and 5 for other colliders. Returns the lanes that have a valid result. */
+/* Steps 2 to 4. Returns the lanes that have a valid result; others are left to contact.c. */
 SPRING_NOINLINE lane_mask rest_lanes(resting_chunk *r, const picked_particles *l, unsigned c, resting_lanes *q)
 {
     const scalar h = (scalar)r->setting->h;
@@ -665,7 +665,10 @@ static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, u
     q.v0 = (real3){v0[0], v0[1], v0[2]};
     q.w = (real3){w[0], w[1], w[2]};
     q.d = times3(splat(m->drift), q.w);
-    const lane_mask fine = rest_lanes(r, l, c, &q), done = fine & q.touching;
+    lane_mask fine = rest_lanes(r, l, c, &q);
+    if (implicit)
+        fine &= are_slow(&q.w, m->max_speed);
+    const lane_mask done = fine & q.touching;
     if (!any(done))
         return fine;
     const real3 x = plus3(q.x0, q.d);

@@ -209,7 +209,8 @@ typedef struct scene_motion {
     const scalar *force;   /* [N] */
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
-    scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; SCALAR_MAX: no limit */
+    scalar
+        max_speed; /* [m/s] largest component of the velocity of a free particle at the end of a step; SCALAR_MAX: no limit */
     contact_motion contacts;
     /* kick_drift */
     bool ends_previous; /* begin with the implicit kick that ends the previous step */
@@ -225,7 +226,8 @@ typedef struct scene_motion {
    or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
-/* Copies x0, v0 and force of particles first ... first + contact_chunk - 1, and further ones of the padding. */
+/* Copies x0 and v0 of particles first ... first + count - 1, and up to the end of the last vector; force if velocities are
+   predicted in its place. */
 typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t first, size_t count, kept_motion *);
 
 /* 1: the result is complete. Of find_pressing also how a particle presses on its collider. */
@@ -236,22 +238,24 @@ typedef struct resting_chunk {
     const contact_setting *setting;
     const collider_bounds *bounds;
     const scene_particles *particles;
-    const scene_motion *step; /* of stop_resting: a kick; of find_near and move_resting: any motion */
+    const scene_motion *step; /* of stop_resting: a kick */
     kept_motion *kept;
-    const scalar *radius, *friction; /* of particles: [m], of all if radius_stride is 0; NULL: 1 */
+    const scalar *radius;   /* [m] by particle, or one vector for all if radius_stride is 0 */
+    const scalar *friction; /* by particle: factor; NULL: 1 */
     size_t radius_stride, first, count;
-    scalar *clearance;   /* [m] by collider: see contact_near_tmpl.h */
-    bool begins;         /* the clearance is not known */
-    uint32_t nearby;     /* bits of the colliders that any of these may touch on paths of this length */
-    scalar way;          /* [m] */
-    const scalar *place; /* [m] where stop_resting stops: the position of the first particle on the first axis */
-    bool at_end;         /* the stop is at the end of the step */
-    uint32_t listed;     /* particles with a candidate */
+    scalar *clearance; /* [m] by collider: see contact_near_tmpl.h */
+    bool begins;       /* the clearance is not known yet */
+    uint32_t nearby;   /* bits of the colliders that any of these may touch on paths of this length */
+    scalar way;        /* [m] a bound on the length of all paths */
+    const scalar
+        *place;      /* [m] where stop_resting stops and find_pressing looks: position of the first particle, axis 0 */
+    bool at_end;     /* the stop is at the end of the step */
+    uint32_t listed; /* particles with a candidate */
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
-    uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
+    uint32_t candidate[contact_chunk]; /* bits of the colliders that the particle may touch */
     uint32_t done[contact_chunk];      /* bits of rest_result */
-    uint32_t *touched;                 /* by particle: the bit of the collider that it touches is added */
-    scalar *change;                    /* [3][contact_chunk] [m/s] written: by the contact; may be kept.force_copy */
+    uint32_t *touched;                 /* by particle, written: the bit of the collider that it touches */
+    scalar *change;                    /* [3][contact_chunk], written: [m/s] by the contact; normals of find_pressing */
 } resting_chunk;
 
 /* Sets `candidate`, `list`, `nearby` and `way` for the motion from kept.x0 to x, for free particles. Returns whether
@@ -295,7 +299,7 @@ typedef struct common_kernels {
 } common_kernels;
 
 /* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain
-   most: the forces of bands, and leapfrog without colliders and held forces. */
+   most: the forces of bands, and kick_drift without held forces. */
 typedef struct scene_kernels {
     const common_kernels *common;
     band_kernel *band_forces;                    /* the forces of all bands */

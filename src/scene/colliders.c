@@ -37,7 +37,7 @@ static double motion_of(const contact_body *b)
     double motion = distance_of_vectors(start->at, end->at);
     if (b->shape == SPRING_PLANE && b->turns)
         return (double)INFINITY;
-    for (int i = 0; i < 3 && b->shape == SPRING_BOX && b->turns; i++)
+    for (int i = 0; i < (b->flat ? 2 : 3) && b->shape == SPRING_BOX && b->turns; i++)
         motion += b->half[i] * distance_of_vectors(start->axis[i], end->axis[i]);
     if (b->shape == SPRING_CAPSULE)
         motion += distance_of_vectors(start->along, end->along);

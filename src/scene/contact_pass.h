@@ -305,7 +305,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
 {
     resting_chunk r;
     scalar change[3][contact_chunk];
-    const bool fine = kernel(p, m, from, from + count); /* otherwise stops may remove what is too fast */
+    const bool fine = kernel(p, m, from, from + count); /* false: stops may still slow particles down */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
     list_touching(&r, touched);

@@ -44,7 +44,7 @@
 
 #include <math.h>
 
-/* Steps spend most of their time in kernels, and in the functions for pressed particles that are compiled for speed. */
+/* Most of the time of a step is that of its kernels. */
 #include "../simd/size_begin.h"
 
 /* ------------------------------------------------------------------------------------------------ pressed particles */
@@ -128,7 +128,8 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
                                    load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon, surface);
 }
 
-/* Particle i, which touches several colliders, or one whose surface moves in its frame. Returns whether it is pressed. */
+/* Particle i, which touches several colliders, a custom body, or a surface that moves in its frame. Returns whether it is
+   pressed. */
 SPRING_NOINLINE bool press(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
 {
     const uint32_t axes = s->particles.axes;
@@ -175,7 +176,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
             *p = (pressed_particle){.freedom = (r.done[k] & RESTS_HELD) != 0 ? HELD : FREE_IN_PLANE};
             for (uint32_t a = 0; a < axes; a++)
                 p->line[a] = p->outwards[a] = normal[a][k];
-            while (before[k] != UINT32_C(1) << p->collider)
+            while (r.candidate[k] != UINT32_C(1) << p->collider)
                 p->collider++;
         } else if (r.done[k] != 0 || !press(s, i, m->v, p)) {
             continue;
@@ -204,8 +205,8 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
 }
 
 /* Removes the components of b - from in which pressed particles are not free. from: NULL: 0, and b is a term of the
-   series. What is removed from a term changes the last one by the same amount, besides damping forces: without them,
-   Clenshaw's recurrence 2 b_{k+1} - b_{k+2} continues a constant. */
+   series. What is removed from a term changes the result by the same amount, besides damping forces: without them,
+   Clenshaw's recurrence 2 b_{k+1} - b_{k+2} continues a difference of terms, and the result is such a difference. */
 static inline void project_pressed(const scene_step *s, const pressed_list *pressed, const scalar *from, scalar *b)
 {
     const size_t stride = s->scene->layout.stride;
@@ -233,8 +234,8 @@ static inline void record_change(const scene_step *s, size_t i, unsigned k, cons
     spring_contact_record(&s->contacts.setting, &particle, k, &at, &removed, &at, &zero);
 }
 
-/* Accelerates pressed particles into their colliders by their loads, until their contacts are computed, so that these
-   stop them with friction. A load is that of the residual, with damping at the velocities v1 at the end of the kick: at
+/* Adds its load to the velocity of each pressed particle. The contacts that are computed next remove it again, with
+   friction. A load is that of the residual, with damping at the velocities v1 at the end of the kick: at
    v0, damping forces may be many times larger than their mean. x: positions of the kick. */
 static inline void load_pressed(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
 {

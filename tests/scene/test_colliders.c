@@ -105,7 +105,7 @@ static void others_change_nothing(void)
 static void speed_limit(void)
 {
     const double x[] = {1, 0.001, 0}, v[] = {0, -5, 0};
-    for (int m = 0; m < 2; m++) {
+    for (int m = 0; m < method_count; m++) {
         const spring_method method = with_contacts[m];
         spring_scene_def def = {.methods = 1u << method, .particles = 1, .position = x, .velocity = v, .colliders = 1};
         def.max_speed = 6, def.gravity[1] = -2000;
