@@ -25,7 +25,7 @@ export type SpringParameters =
     | Only<{
           /** 2 pi / undamped angular frequency; > 0; default 0.5 */
           duration?: number;
-          /** -1 to 1; default 0, which does not overshoot. 1 never stops. */
+          /** > -1 and <= 1; default 0, which does not overshoot. 1 never stops. */
           bounce?: number;
       }>
     | Only<{
@@ -45,7 +45,7 @@ export type SpringParameters =
           settling: number;
           /** > 0; default 1, which does not overshoot */
           dampingRatio?: number;
-          /** 0 to 1; default 0.001 */
+          /** > 0 and < 1; default 0.001 */
           tolerance?: number;
       }>;
 
@@ -144,7 +144,7 @@ export declare class Spring {
 
     /**
      * Advances by `dt` seconds, of any length, and returns the value. A negative `dt` integrates backwards. Value and velocity
-     * are bit-identical to those of spring_follow() in C. If they would overflow, step() throws a RangeError and changes
+     * are bit-identical to those of spring_follow() in C until the spring settles. If they would overflow, step() throws a RangeError and changes
      * nothing. A settled spring stays at rest on its target.
      */
     step(dt: number): number;

@@ -16,7 +16,7 @@ const digit = (code) => code - (code < 58 ? 48 : 87);
 function inside() {
     if (!hasSimd())
         throw new Error(
-            "springstep/scenes needs SIMD for WebAssembly: Chrome 91, Firefox 89, Safari 16.4, Node 18 or later",
+            "springstep/scenes needs SIMD for WebAssembly: Chrome 91, Firefox 90, Safari 16.4, Node 18 or later",
         );
     if (embedded === null) throw new Error("springstep/scenes/bare: first await ready() with scenes.wasm");
     const bytes = new Uint8Array(embedded.length / 2);

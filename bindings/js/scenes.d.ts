@@ -39,7 +39,7 @@ export declare const TENSION_ONLY: 1;
 /** Flag of a tension-only link that acts only while exactly one of its ends is pinned. */
 export declare const TETHER: 2;
 
-/** Springs between two weighted points: d is the sum of weight times position over up to four particles. */
+/** Springs between two weighted points: their vector is the sum of weight times position over up to four particles. */
 export interface WeightedLinks {
     /** four particles of each link in turn */
     particles: ArrayLike<number>;
@@ -161,7 +161,7 @@ export interface FrameOptions {
     /**
      * Moves pins and colliders. It is called once before the steps of a frame, and not if no step is due. `time` [s] is from
      * the time of the scene to the end of the frame: drive(i, target, time) with the present target. `dropped` [s] has been
-     * dropped before that, by this frame or by frames that failed: transform() moves the scene by its motion in this time.
+     * dropped before that, by this frame or by frames that failed: transform() moves the scene by the motion of the target in this time.
      * If move() throws, the frame fails.
      */
     move?: ((time: number, dropped: number) => void) | null;
@@ -322,7 +322,7 @@ export interface Snapshot {
 
 /**
  * A mass-spring system. Bad input throws a RangeError or TypeError and changes nothing. Steps that fail throw a RangeError with
- * the code "SPRING_ENONFINITE" or "SPRING_EUNSTABLE" and leave the scene as it was.
+ * the code "SPRING_ENONFINITE" or "SPRING_EUNSTABLE" and leave the scene as it was (unless it has `noUndo`).
  *
  * Memory is released by free(), by `using`, or when the scene is collected as garbage.
  */
@@ -342,8 +342,8 @@ export declare class Scene {
     advance(method: Method, dt: number, steps?: number): void;
 
     /**
-     * Takes the steps that are due after `elapsed` more seconds, and returns their number: by default with leapfrog, and with
-     * steps of 1/240 s, or half of the stable step if this is less.
+     * Takes the steps that are due after `elapsed` more seconds, and returns their number: by default with leapfrog, and
+     * with 1/60 s divided into equal steps of at most 1/240 s and at most half of the stable step.
      */
     frame(elapsed: number, options?: FrameOptions & { method?: Method; dt?: number }): number;
 

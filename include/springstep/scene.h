@@ -40,7 +40,8 @@
  *    not collide with each other. Links do not collide.
  *
  * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float,
- * which halves the memory; docs/performance.md compares the time. Definitions, colliders, times, energies and
+ * except for contacts that are computed one by one, which takes about 0.6 of the memory; docs/performance.md compares
+ * the time. Definitions, colliders, times, energies and
  * tolerances are double, as are the arrays of spring_scenef_get() and spring_scenef_set(). The callback and
  * spring_scenef_getf() use float arrays.
  */
@@ -179,9 +180,9 @@ typedef enum spring_shape {
 /** Computes the signed distance of a point from the surface of a SPRING_CUSTOM body, and the outward unit normal there.
  *
  * Writes one to three contacts, and returns their number. Return two or three where several parts of the surface are
- * near, as in a valley. The gap is negative inside, however deep. It may be a lower bound of the size of the distance
- * with the right sign, if it changes by at most the way of the point (Lipschitz constant 1), as a height field divided by
- * sqrt(1 + slope^2) does. Far away, one contact with any lower bound is enough. The function must depend only on its
+ * near, as in a valley. The gap is negative inside, however deep. It may be smaller in size than the distance if
+ * its sign is right and it changes by no more than the point moves (Lipschitz constant 1), like a height field divided
+ * by sqrt(1 + slope^2). Far away, one contact with any lower bound is enough. The function must depend only on its
  * arguments and on data that does not change during a call.
  *
  * @param[in]  user    the pointer of the collider
@@ -332,7 +333,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and
  * with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
  *
- * The damping of links saturates, so that dt G <= 30000 and at most 279 evaluations of damping are made: the damping of
+ * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the damping of
  * a link is reduced by the larger excess of its ends. Such a link relaxes within about
  * 30000 mass/(stiffness dt^2) steps.
  *
@@ -360,7 +361,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass Omega |v| in such a
  * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
  * (Omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency omega, a fraction of about
- * Omega dt (omega dt)^3/8 per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy:
+ * Omega dt (omega dt)^3/(8 sqrt(1 - (omega dt)^2/4)) per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy:
  * the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain (Omega dt)^2 (tests/scene/test_forces.c).
  *
  * Contacts have order 2 with leapfrog and RK4, also across impacts, with colliders that turn and accelerate, and with
@@ -396,8 +397,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *
  * The bound holds however far links are stretched or compressed, because tension/length <= stiffness. (A compressed
  * scene may buckle with any step.) It follows from three sums over the links of a particle. Each is the largest sum of
- * any free particle. A link counts once instead of twice if its other end is pinned. A weighted link counts |weight|
- * of the particle times the sum of |weight| of its free particles instead of twice.
+ * any free particle. A link counts once instead of twice if its other end is pinned. For a weighted link, the factor 2
+ * is replaced by |weight| of the particle times the sum of |weight| over the free particles of the link.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
  *     G [1/s]    sum of 2 damping/mass, plus drag/mass
@@ -418,8 +419,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    and sheets with shear springs with drag/mass of at least 0.1/s, while no link is longer than twice its rest
  *    length; up to 0.5 for ropes with such drag;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
- * `spring-work --problem steps` measures what longer steps cost. Use a smaller step if a link rotates faster than it
- * would oscillate. The forces of a callback are not considered; docs/games.md has a bound with them.
+ * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
+ * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered; docs/games.md has a bound with them.
  *
  * At rest without link damping, the stability limit is larger than the bound. With leapfrog, symplectic Euler and
  * SRKN6, it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times
@@ -819,8 +820,8 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  * Loads a state into a scene of the same definition. The run then continues bit-identically.
  *
  * The call checks that the state is complete and undamaged, and that precision, axes, flags, methods, the numbers of
- * particles, links and weighted links, the maximum number of colliders, the ends, order and flags of links, the
- * particles of weighted links, how many links are damped (unless the scene is editable), and whether there is a
+ * particles, links and weighted links, the maximum number of colliders, the arrays of radius, friction and mask, the
+ * ends, order and flags of links, the particles of weighted links, how many links are damped (unless the scene is editable), and whether there is a
  * callback are those of this scene. It cannot check the following, which a run also depends on. They must be the same
  * as in the scene that was saved:
  *  - drag, max_speed and particle_radius;

@@ -316,9 +316,44 @@ static void orders(void)
 
 #endif
 
+/* The largest energy of a link that rotates, stretched to `ratio` times its rest length, as a multiple of the energy at the
+   start. */
+static double energy_of_rotation(double ratio, double damping_ratio, double fraction)
+{
+    const double mass = 1.3, rest = 0.8, stiffness = 170, half = ratio * rest / 2;
+    const double spin = sqrt(2 * stiffness / mass * (1 - 1 / ratio)), off = 1e-5;
+    const double x[2][2] = {{-half, 0}, {half + off, 0}}, v[2][2] = {{0, -spin * half}, {0, spin * half}};
+    const spring_link link = {0, 1, rest, stiffness, damping_ratio * sqrt(2 * stiffness * mass), 0};
+    const spring_scene_def def = {
+        .axes = 2, .particles = 2, .position = x[0], .velocity = v[0], .mass_all = mass, .links = 1, .link = &link};
+    spring_scene *s = scene_of(&def);
+    const double dt = fraction * spring_scene_stable_step(s, SPRING_LEAPFROG);
+    const spring_scene_energies start = spring_scene_energy(s);
+    double largest = 1;
+    for (int i = 0; i < 2000 && spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK; i++) {
+        const spring_scene_energies now = spring_scene_energy(s);
+        largest = fmax(largest, (now.kinetic + now.elastic) / (start.kinetic + start.elastic));
+    }
+    free(s);
+    return largest;
+}
+
+/* The rule of spring_scene_stable_step() for links that steady rotation stretches: 0.7 of the bound, and 0.9 is too much. */
+static void rotation(void)
+{
+    for (int damped = 0; damped < 2; damped++) {
+        const double damping_ratio = damped ? 0.02 : 0;
+        for (double ratio = 1.02; ratio < 4; ratio *= 1.1)
+            CHECK_BELOW(energy_of_rotation(ratio, damping_ratio, 0.7), 1.2,
+                        "it oscillates a little, and does not grow");
+        CHECK(energy_of_rotation(1.3, damping_ratio, 0.9) > 5, "the rule is needed");
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
+        {"steady rotation", rotation},
         {"against the definitions", against_definitions},
         {"momentum", momentum},
         {"leapfrog is reversible", reversible},

@@ -313,7 +313,7 @@ await test("a list of 50", async () => {
         { length: 50 },
         (_, i) => `<div id="i${i}" style="position: absolute"></div>`,
     ).join("");
-    const more = 'window.sort = recipe.sortable([...document.querySelectorAll("div")], 40);';
+    const more = 'window.sort = recipe.sortable([...document.querySelectorAll("div")], 40).sort;';
     const page = await opened("list", program(page_, "A list", "js"), { html, more });
     await rests(page, "#i49", "0px 1960px");
     await page.evaluate(() => sort(Array.from({ length: 50 }, (_, i) => 49 - i)));
