@@ -23,7 +23,7 @@ tar -C "$root" --exclude-vcs --exclude='./build*' -c . | tar -C "$tree" -x
 
 closing='^([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$'
 passed=0 failed=0 skipped=0
-rows=() failures=()
+rows=() failed_tests=()
 
 # row NAME SECONDS RESULT
 row() {
@@ -76,7 +76,7 @@ suite() {
         counted=0 status=1 result='no count of tests'
     fi
     if [ $status -ne 0 ]; then
-        mapfile -t -O ${#failures[@]} failures < <(grep -aE '^(FAILED|not ok) ' "$work/log" | head -n 20 | sed "s|^|$1: |")
+        mapfile -t -O ${#failed_tests[@]} failed_tests < <(grep -aE '^(FAILED|not ok) ' "$work/log" | head -n 20 | sed "s|^|$1: |")
         result="FAILED: $result"
         if [ "$counted" -eq 0 ]; then failed=$((failed + 1)); fi
     fi
@@ -121,7 +121,7 @@ under_sanitizers() {
 # Last: the tests that failed, the table and the sum of the counts; its status is that of the script.
 finish() {
     row total $SECONDS ''
-    if [ ${#failures[@]} -gt 0 ]; then printf '\n%s' "${failures[@]}"; fi
+    if [ ${#failed_tests[@]} -gt 0 ]; then printf '\n%s' "${failed_tests[@]}"; fi
     printf '\n%-24s minutes  result\n' part
     printf '%s\n' "${rows[@]}"
     echo "$passed passed, $failed failed, $skipped skipped"
