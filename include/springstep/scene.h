@@ -39,11 +39,10 @@
  *  - Particles collide with colliders: planes, spheres, capsules, boxes, and bodies that a function describes. They do
  *    not collide with each other. Links do not collide.
  *
- * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float,
- * except for contacts that are computed one by one, which takes about 0.6 of the memory; docs/performance.md compares
- * the time. Definitions, colliders, times, energies and
- * tolerances are double, as are the arrays of spring_scenef_get() and spring_scenef_set(). The callback and
- * spring_scenef_getf() use float arrays.
+ * spring_scenef_... is the single-precision version, compiled from the same source. It needs about 0.6 of the memory;
+ * docs/performance.md compares the time. State and arithmetic are float, except those of contacts that are computed one
+ * particle at a time. Definitions, colliders, times, energies and tolerances are double, as are the arrays of
+ * spring_scenef_get() and spring_scenef_set(). The callback and spring_scenef_getf() use float arrays.
  */
 #ifndef SPRINGSTEP_SCENE_H
 #define SPRINGSTEP_SCENE_H
@@ -333,8 +332,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and
  * with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
  *
- * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the damping of
- * a link is reduced by the larger excess of its ends. Such a link relaxes within about
+ * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
+ * damping of a link is reduced by the larger excess of its ends. Such a link relaxes within about
  * 30000 mass/(stiffness dt^2) steps.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
@@ -361,8 +360,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass Omega |v| in such a
  * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
  * (Omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency omega, a fraction of about
- * Omega dt (omega dt)^3/(8 sqrt(1 - (omega dt)^2/4)) per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy:
- * the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain (Omega dt)^2 (tests/scene/test_forces.c).
+ * Omega dt (omega dt)^3/(8 sqrt(1 - (omega dt)^2/4)) per step, unless drag/mass exceeds this fraction divided by dt.
+ * Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain
+ * (Omega dt)^2 (tests/scene/test_forces.c).
  *
  * Contacts have order 2 with leapfrog and RK4, also across impacts, with colliders that turn and accelerate, and with
  * friction across stops and reversals of direction. They have order 1 with symplectic Euler. See
@@ -420,7 +420,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    length; up to 0.5 for ropes with such drag;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
  * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
- * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered; docs/games.md has a bound with them.
+ * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered;
+ * docs/games.md has a bound with them.
  *
  * At rest without link damping, the stability limit is larger than the bound. With leapfrog, symplectic Euler and
  * SRKN6, it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times
@@ -821,9 +822,9 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  *
  * The call checks that the state is complete and undamaged, and that precision, axes, flags, methods, the numbers of
  * particles, links and weighted links, the maximum number of colliders, the arrays of radius, friction and mask, the
- * ends, order and flags of links, the particles of weighted links, how many links are damped (unless the scene is editable), and whether there is a
- * callback are those of this scene. It cannot check the following, which a run also depends on. They must be the same
- * as in the scene that was saved:
+ * ends, order and flags of links, the particles of weighted links, how many links are damped (unless the scene is
+ * editable), and whether there is a callback are those of this scene. It cannot check the following, which a run also
+ * depends on. They must be the same as in the scene that was saved:
  *  - drag, max_speed and particle_radius;
  *  - masses, pinned particles and the coefficients of links, unless the scene is editable;
  *  - the callback, and the data that it reads.

@@ -585,8 +585,7 @@ SPRING_NOINLINE void leave_to_others(resting_chunk *r, unsigned c, const resting
     }
 }
 
-SPRING_CONTACT_INLINE void begin_resting(const resting_chunk *r, const picked_particles *l, unsigned c,
-                                         resting_lanes *q)
+SPRING_CONTACT_INLINE void pick_resting(const resting_chunk *r, const picked_particles *l, unsigned c, resting_lanes *q)
 {
     q->b = &r->setting->body[c];
     q->x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, r->particles->axes);
@@ -615,8 +614,8 @@ SPRING_NOINLINE lane_mask rest_lanes(resting_chunk *r, const picked_particles *l
 }
 
 /* Writes the results of lanes that touch collider c. */
-SPRING_NOINLINE void finish_resting(resting_chunk *r, const picked_particles *l, unsigned c, const lane_mask *done,
-                                    const resting_lanes *q, const real3 *x, const real3 *v)
+SPRING_NOINLINE void put_resting(resting_chunk *r, const picked_particles *l, unsigned c, const lane_mask *done,
+                                 const resting_lanes *q, const real3 *x, const real3 *v)
 {
     const scene_particles *const p = r->particles;
     put3(l, done, x, r->step->x + r->first, p->stride, p->axes);
@@ -627,6 +626,14 @@ SPRING_NOINLINE void finish_resting(resting_chunk *r, const picked_particles *l,
     for (size_t j = 0; j < lanes; j++)
         if (touches[j] != 0)
             r->touched[r->first + l->place[j]] = UINT32_C(1) << c;
+}
+
+/* The velocity after an implicit kick by the acceleration `free`. */
+SPRING_CONTACT_INLINE real end_of_kick(const scene_motion *m, bool dragged, const implicit_factors *damping, real v0,
+                                       real free)
+{
+    const real u = v0 + m->kick * free;
+    return dragged ? implicit_velocity(u, damping) : u;
 }
 
 /* A kick and a drift of particles that may touch collider c only: see rest_step. */
@@ -642,7 +649,7 @@ static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, u
     const real3 force = pick3(l, r->kept->force, r->kept->force_stride, 1, axes);
     const real3 held = pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes);
     const real pull[3] = {force.x + held.x, force.y + held.y, force.z + held.z};
-    begin_resting(r, l, c, &q);
+    pick_resting(r, l, c, &q);
     const real drag = p->drag * inverse_mass;
     implicit_factors damping = {splat(1), splat(0)};
     if (dragged)
@@ -650,17 +657,10 @@ static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, u
     real free[3], v0[3] = {q.v0.x, q.v0.y, q.v0.z}, w[3];
     for (uint32_t a = 0; a < 3; a++) {
         free[a] = a < axes ? inverse_mass * pull[a] + vec_load(p->gravity + a * padding) : splat(0);
-        if (m->ends_previous) {
-            v0[a] += m->kick * free[a];
-            v0[a] = dragged ? implicit_velocity(v0[a], &damping) : v0[a];
-        }
-        if (implicit) {
-            w[a] = v0[a] + m->kick * free[a];
-            w[a] = dragged ? implicit_velocity(w[a], &damping) : w[a];
-            continue;
-        }
+        if (m->ends_previous)
+            v0[a] = end_of_kick(m, dragged, &damping, v0[a], free[a]);
         const real accel = dragged ? free[a] - drag * v0[a] : free[a];
-        w[a] = v0[a] + m->kick * accel;
+        w[a] = implicit ? end_of_kick(m, dragged, &damping, v0[a], free[a]) : v0[a] + m->kick * accel;
     }
     q.v0 = (real3){v0[0], v0[1], v0[2]};
     q.w = (real3){w[0], w[1], w[2]};
@@ -673,17 +673,13 @@ static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, u
         return fine;
     const real3 x = plus3(q.x0, q.d);
     if (m->predicted != NULL) {
-        const real w_end[3] = {q.w.x, q.w.y, q.w.z};
-        real end[3];
-        for (uint32_t a = 0; a < 3; a++) {
-            end[a] = w_end[a] + m->kick * free[a];
-            end[a] = dragged ? implicit_velocity(end[a], &damping) : end[a];
-        }
-        real3 predicted = {end[0], end[1], end[2]};
+        real3 predicted = {end_of_kick(m, dragged, &damping, q.w.x, free[0]),
+                           end_of_kick(m, dragged, &damping, q.w.y, free[1]),
+                           end_of_kick(m, dragged, &damping, q.w.z, free[2])};
         stop_lanes(q.b, &q.b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
         put3(l, &done, &predicted, m->predicted + first, p->stride, axes);
     }
-    finish_resting(r, l, c, &done, &q, &x, &q.w);
+    put_resting(r, l, c, &done, &q, &x, &q.w);
     return fine;
 }
 
@@ -693,7 +689,7 @@ static lane_mask rest_in_whole_step(resting_chunk *r, const picked_particles *l,
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
     resting_lanes q;
-    begin_resting(r, l, c, &q);
+    pick_resting(r, l, c, &q);
     const real3 v_free = pick3(l, m->v + r->first, p->stride, 1, p->axes);
     const real3 x_free = pick3(l, m->x + r->first, p->stride, 1, p->axes);
     q.d = minus3(x_free, q.x0);
@@ -707,7 +703,7 @@ static lane_mask rest_in_whole_step(resting_chunk *r, const picked_particles *l,
     q.change = minus3(v, v_free);
     fine &= are_slow(&v, m->max_speed);
     const lane_mask done = fine & q.touching;
-    finish_resting(r, l, c, &done, &q, &x, &v);
+    put_resting(r, l, c, &done, &q, &x, &v);
     put3(l, &done, &x_free, r->kept->x0[0], contact_chunk, p->axes);
     return fine;
 }
@@ -732,7 +728,7 @@ static lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, u
 
 /* Particles that touch collider c at the start of the step press on it if they do not leave it and their residual
    points into it. */
-static lane_mask press_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_mask pressing_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -820,9 +816,9 @@ static void stop_touching(resting_chunk *r)
     for_each_candidate(r, stop_on_collider);
 }
 
-static void press_touching(resting_chunk *r)
+static void detect_pressing(resting_chunk *r)
 {
-    for_each_candidate(r, press_on_collider);
+    for_each_candidate(r, pressing_on_collider);
 }
 
 static void advance_resting(resting_chunk *r)

@@ -209,8 +209,7 @@ typedef struct scene_motion {
     const scalar *force;   /* [N] */
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
-    scalar
-        max_speed; /* [m/s] largest component of the velocity of a free particle at the end of a step; SCALAR_MAX: no limit */
+    scalar max_speed;      /* [m/s] by axis, of free particles at the end of a step; SCALAR_MAX: no limit */
     contact_motion contacts;
     /* kick_drift */
     bool ends_previous; /* begin with the implicit kick that ends the previous step */
@@ -226,11 +225,11 @@ typedef struct scene_motion {
    or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
-/* Copies x0 and v0 of particles first ... first + count - 1, and up to the end of the last vector; force if velocities are
-   predicted in its place. */
+/* Copies x0 and v0 of particles first ... first + count - 1, and up to the end of the last vector; force if
+   velocities are predicted in its place. */
 typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t first, size_t count, kept_motion *);
 
-/* 1: the result is complete. Of find_pressing also how a particle presses on its collider. */
+/* RESTS_DONE: the result is complete. The others: how a particle presses on its collider, by find_pressing. */
 typedef enum rest_result { RESTS_DONE = 1, RESTS_PRESSED = 2, RESTS_HELD = 4 } rest_result;
 
 /* Particles first ... first + count - 1 of a motion that may touch colliders. */
@@ -243,14 +242,13 @@ typedef struct resting_chunk {
     const scalar *radius;   /* [m] by particle, or one vector for all if radius_stride is 0 */
     const scalar *friction; /* by particle: factor; NULL: 1 */
     size_t radius_stride, first, count;
-    scalar *clearance; /* [m] by collider: see contact_near_tmpl.h */
-    bool begins;       /* the clearance is not known yet */
-    uint32_t nearby;   /* bits of the colliders that any of these may touch on paths of this length */
-    scalar way;        /* [m] a bound on the length of all paths */
-    const scalar
-        *place;      /* [m] where stop_resting stops and find_pressing looks: position of the first particle, axis 0 */
-    bool at_end;     /* the stop is at the end of the step */
-    uint32_t listed; /* particles with a candidate */
+    scalar *clearance;   /* [m] by collider: see contact_near_tmpl.h */
+    bool begins;         /* the clearance is not known yet */
+    uint32_t nearby;     /* bits of the colliders that any of these may touch on paths of this length */
+    scalar way;          /* [m] a bound on the length of all paths */
+    const scalar *place; /* [m] where stop_resting and find_pressing are: the first particle on the first axis */
+    bool at_end;         /* the stop is at the end of the step */
+    uint32_t listed;     /* particles with a candidate */
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that the particle may touch */
     uint32_t done[contact_chunk];      /* bits of rest_result */
@@ -262,10 +260,11 @@ typedef struct resting_chunk {
    there is a candidate. */
 typedef bool near_kernel(resting_chunk *);
 
-/* For particles with one candidate; they set `done`. stop_resting completes a kick: it writes v and change. move_resting completes
-   motions of particles that rest or slide: it writes x, v, predicted, touched and change. Of a whole step it also
-   writes x of the motion without contacts, to kept.x0. find_pressing finds particles that press on their collider at the
-   start of a step, where v of the step is their residual; it writes their normals to change. */
+/* For particles with one candidate; they set `done`. stop_resting completes a kick: it writes v and change.
+   move_resting completes motions of particles that rest or slide: it writes x, v, predicted, touched and change. Of
+   a whole step it also writes x of the motion without contacts, to kept.x0. find_pressing finds particles that press
+   on their collider at the start of a step, where v of the step is their residual; it writes their normals to
+   change. */
 typedef void rest_kernel(resting_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */

@@ -45,7 +45,7 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .find_near = find_near_colliders,
     .stop_resting = stop_touching,
     .move_resting = advance_resting,
-    .find_pressing = press_touching,
+    .find_pressing = detect_pressing,
 };
 #endif
 

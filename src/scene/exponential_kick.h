@@ -128,9 +128,9 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
                                    load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon, surface);
 }
 
-/* Particle i, which touches several colliders, a custom body, or a surface that moves in its frame. Returns whether it is
-   pressed. */
-SPRING_NOINLINE bool press(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
+/* Whether particle i is pressed, and how. It touches several colliders, a custom body, or a surface that moves in its
+   frame. */
+SPRING_NOINLINE bool is_pressed(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
 {
     const uint32_t axes = s->particles.axes;
     bool pressed = false;
@@ -178,7 +178,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
                 p->line[a] = p->outwards[a] = normal[a][k];
             while (r.candidate[k] != UINT32_C(1) << p->collider)
                 p->collider++;
-        } else if (r.done[k] != 0 || !press(s, i, m->v, p)) {
+        } else if (r.done[k] != 0 || !is_pressed(s, i, m->v, p)) {
             continue;
         }
         p->particle = (uint32_t)i;
