@@ -42,7 +42,7 @@ SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, re
         const real rounding = 32 * SCALAR_EPSILON * size, reach = radius + (c->reach + rounding);
         const real gap = dot3(x0, splat3(c->axis[0])) - c->offset[0];
         *away = gap - 2 * rounding;
-        return not_mask(gap >= reach) | not_mask(dot3(x, splat3(c->axis[1])) - c->offset[1] >= reach);
+        return not_mask(gap > reach) | not_mask(dot3(x, splat3(c->axis[1])) - c->offset[1] > reach);
     }
     real3 arm = minus3(x0, splat3(c->at));
     const real3 d = minus3(minus3(x, x0), splat3(c->shift));

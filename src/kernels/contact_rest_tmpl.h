@@ -494,8 +494,8 @@ SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, r
 
 /* Particles of a chunk, one in each lane. */
 typedef struct picked_particles {
-    size_t place[lanes]; /* in the chunk */
-    lane_mask where;     /* others are of other particles, or of the first one */
+    size_t place[lanes]; /* in the chunk; of consecutive particles only the first is set */
+    lane_mask where;     /* the lanes to compute; others have the values of some particle */
     bool consecutive;
 } picked_particles;
 
@@ -613,19 +613,14 @@ SPRING_NOINLINE lane_mask rest_lanes(resting_chunk *r, const picked_particles *l
     return fine;
 }
 
-/* Writes the results of lanes that touch collider c. */
-SPRING_NOINLINE void put_resting(resting_chunk *r, const picked_particles *l, unsigned c, const lane_mask *done,
+/* Writes the results of lanes that touch a collider. */
+SPRING_NOINLINE void put_resting(resting_chunk *r, const picked_particles *l, const lane_mask *done,
                                  const resting_lanes *q, const real3 *x, const real3 *v)
 {
     const scene_particles *const p = r->particles;
     put3(l, done, x, r->step->x + r->first, p->stride, p->axes);
     put3(l, done, v, r->step->v + r->first, p->stride, p->axes);
     put3(l, done, &q->change, r->change, contact_chunk, 3);
-    uint32_t touches[lanes];
-    store_bits(touches, bits_where(*done, 1));
-    for (size_t j = 0; j < lanes; j++)
-        if (touches[j] != 0)
-            r->touched[r->first + l->place[j]] = UINT32_C(1) << c;
 }
 
 /* The velocity after an implicit kick by the acceleration `free`. */
@@ -637,7 +632,7 @@ SPRING_CONTACT_INLINE real end_of_kick(const scene_motion *m, bool dragged, cons
 }
 
 /* A kick and a drift of particles that may touch collider c only: see rest_step. */
-static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
@@ -670,7 +665,7 @@ static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, u
         fine &= are_slow(&q.w, m->max_speed);
     const lane_mask done = fine & q.touching;
     if (!any(done))
-        return fine;
+        return bits_where(fine, RESTS_DONE);
     const real3 x = plus3(q.x0, q.d);
     if (m->predicted != NULL) {
         real3 predicted = {end_of_kick(m, dragged, &damping, q.w.x, free[0]),
@@ -679,12 +674,12 @@ static lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, u
         stop_lanes(q.b, &q.b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
         put3(l, &done, &predicted, m->predicted + first, p->stride, axes);
     }
-    put_resting(r, l, c, &done, &q, &x, &q.w);
-    return fine;
+    put_resting(r, l, &done, &q, &x, &q.w);
+    return bits_where(fine, RESTS_DONE) | bits_where(done, RESTS_TOUCHING);
 }
 
 /* The same for a whole step: it counts as a drift with its mean velocity between two kicks. */
-static lane_mask rest_in_whole_step(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits rest_in_whole_step(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
@@ -696,19 +691,19 @@ static lane_mask rest_in_whole_step(resting_chunk *r, const picked_particles *l,
     q.w = times3(splat(1 / (scalar)r->setting->h), q.d);
     lane_mask fine = rest_lanes(r, l, c, &q);
     if (!any(fine & q.touching))
-        return fine;
+        return bits_where(fine, RESTS_DONE);
     const real3 x = plus3(q.x0, q.d);
     real3 v = plus3(v_free, q.change);
     stop_lanes(q.b, &q.b->end, &x, &q.radius, &q.friction, q.touching, &v);
     q.change = minus3(v, v_free);
     fine &= are_slow(&v, m->max_speed);
     const lane_mask done = fine & q.touching;
-    put_resting(r, l, c, &done, &q, &x, &v);
+    put_resting(r, l, &done, &q, &x, &v);
     put3(l, &done, &x_free, r->kept->x0[0], contact_chunk, p->axes);
-    return fine;
+    return bits_where(fine, RESTS_DONE) | bits_where(done, RESTS_TOUCHING);
 }
 
-static lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -723,12 +718,12 @@ static lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, u
     const real3 change = minus3(v, kicked);
     put3(l, &fine, &v, m->v + r->first, p->stride, p->axes);
     put3(l, &fine, &change, r->change, contact_chunk, 3);
-    return fine;
+    return bits_where(fine, RESTS_DONE | RESTS_TOUCHING);
 }
 
 /* Particles that touch collider c at the start of the step press on it if they do not leave it and their residual
    points into it. */
-static lane_mask pressing_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits pressing_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -747,73 +742,141 @@ static lane_mask pressing_on_collider(resting_chunk *r, const picked_particles *
     const lane_mask holds =
         presses & (dot3(sliding, sliding) <= rounding * rounding) & (dot3(free, free) <= limit * limit);
     put3(l, &presses, &normal, r->change, contact_chunk, 3);
-    uint32_t how[lanes];
-    store_bits(how, bits_where(presses, RESTS_PRESSED) | bits_where(holds, RESTS_HELD));
-    for (size_t j = 0; j < lanes; j++)
-        r->done[l->place[j]] |= how[j];
-    return l->where;
+    return bits_where(l->where, RESTS_DONE) | bits_where(presses, RESTS_PRESSED) | bits_where(holds, RESTS_HELD);
 }
 
-/* Computes the contact of some particles with collider c, their only candidate. Returns the lanes whose motion is
-   complete. */
-typedef lane_mask rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
+/* Computes the contact of some particles with collider c, their only candidate. Returns bits of rest_result. */
+typedef lane_bits rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
 
-/* Picks particles from *k on of a list of places: those within the next vector if they fill half of it, else any. *k:
-   where to continue */
-SPRING_CONTACT_INLINE void pick_next(const resting_chunk *r, const uint8_t *list, size_t listed, size_t *k,
-                                     picked_particles *l)
+/* Listed places in a chunk, which are not consecutive. */
+SPRING_NOINLINE void step_listed(resting_chunk *r, unsigned c, const uint8_t *list, size_t listed, rest_step *step)
 {
-    const size_t last = (r->count - 1) / lanes * lanes, start = list[*k] < last ? list[*k] : last; /* in the padding */
-    const size_t first = *k;
-    while (*k < listed && list[*k] < start + lanes)
-        ++*k;
-    l->consecutive = 2 * (*k - first) >= lanes;
-    if (are_consecutive(l)) {
-        uint32_t window[lanes] = {0};
-        for (size_t j = first; j < *k; j++)
-            window[list[j] - start] = 1;
+    for (size_t k = 0; k < listed; k += lanes) {
+        const size_t many = listed - k < lanes ? listed - k : lanes;
+        picked_particles l = {.where = first_lanes(many)};
+        uint32_t result[lanes];
         for (size_t j = 0; j < lanes; j++)
-            l->place[j] = start + j;
-        l->where = *k - first == lanes ? first_lanes(lanes) : are_bits(load_bits(window), 1);
-        return;
+            l.place[j] = list[k + (j < many ? j : 0)];
+        store_bits(result, step(r, &l, c));
+        for (size_t j = 0; j < many; j++)
+            r->done[l.place[j]] |= result[j];
     }
-    *k = listed - first < lanes ? listed : first + lanes;
-    for (size_t j = 0; j < lanes; j++)
-        l->place[j] = list[first + j < *k ? first + j : first];
-    l->where = first_lanes(*k - first);
 }
 
-SPRING_NOINLINE void for_each_candidate(resting_chunk *r, rest_step *step)
+/* Vectors of consecutive particles of which at least half have this collider as their only candidate are computed as
+   they are. Other particles are collected first. Returns the bits of the colliders that had particles. */
+SPRING_NOINLINE uint32_t for_each_candidate(resting_chunk *r, rest_step *step)
 {
-    uint32_t single = 0;
-    for (size_t k = 0; k < r->listed; k++) {
-        const uint32_t bits = r->candidate[r->list[k]];
-        single |= (bits & (bits - 1)) == 0 ? bits : 0;
-    }
+    const uint32_t nearby = r->nearby;
+    uint32_t found = 0;
     for (unsigned c = 0; c < r->setting->count; c++) {
         const contact_body *const b = &r->setting->body[c];
-        if ((single >> c & 1) == 0 || b->slips || is_custom(b->shape))
+        if ((nearby >> c & 1) == 0 || b->slips || is_custom(b->shape))
             continue;
-        uint8_t list[contact_chunk + 1];
+        picked_particles l;
+        uint8_t list[contact_chunk];
         size_t listed = 0;
-        for (size_t k = 0; k < r->listed; k++) {
-            list[listed] = r->list[k];
-            listed += r->candidate[r->list[k]] == UINT32_C(1) << c;
+        l.consecutive = true;
+        for (size_t i = 0; i < r->count; i += lanes) {
+            uint32_t is[lanes];
+            size_t many = 0;
+            l.where = are_bits(load_bits(r->candidate + i), UINT32_C(1) << c);
+            if (!any(l.where))
+                continue;
+            store_bits(is, bits_where(l.where, 1));
+            for (size_t j = 0; j < lanes; j++) {
+                list[listed + many] = (uint8_t)(i + j);
+                many += is[j];
+            }
+            found |= UINT32_C(1) << c;
+            l.place[0] = i;
+            if (2 * many < lanes)
+                listed += many;
+            else
+                store_bits(r->done + i, load_bits(r->done + i) | step(r, &l, c));
         }
-        for (size_t k = 0; k < listed;) {
-            picked_particles l;
-            uint32_t complete[lanes];
-            pick_next(r, list, listed, &k, &l);
-            store_bits(complete, bits_where(step(r, &l, c), 1));
-            for (size_t j = 0; j < lanes; j++)
-                r->done[l.place[j]] |= complete[j];
+        step_listed(r, c, list, listed, step);
+    }
+    return found;
+}
+
+/* The partial sums of impulses, by the place in the chunk, so that they do not depend on the vector width. */
+enum { impulse_sums = 8, sum_vectors = impulse_sums > lanes ? impulse_sums / lanes : 1 };
+
+SPRING_CONTACT_INLINE void sum_lanes(double sum[3], const real3 part[sum_vectors])
+{
+    for (int k = 0; k < sum_vectors; k++) {
+        scalar x[lanes], y[lanes], z[lanes];
+        vec_store(x, part[k].x);
+        vec_store(y, part[k].y);
+        vec_store(z, part[k].z);
+        for (size_t j = 0; j < lanes; j++) {
+            sum[0] += (double)x[j];
+            sum[1] += (double)y[j];
+            sum[2] += (double)z[j];
         }
     }
+}
+
+/* Adds the impulses of the changes of velocity of particles at x to collider c. `moves`: the contact also moved them, to x
+   of the step. Moments are summed about the first particle of the chunk, which single precision resolves better than a
+   distant origin. */
+SPRING_NOINLINE void add_impulses_of(const resting_chunk *r, unsigned c, const scalar *x, size_t stride, bool moves)
+{
+    const scene_particles *const p = r->particles;
+    const real3 zero = zero_lanes();
+    const real3 from = {splat(x[0]), splat(x[stride]), splat(p->axes > 2 ? x[2 * stride] : 0)};
+    real3 linear[sum_vectors], angular[sum_vectors];
+    bool found = false;
+    for (int k = 0; k < sum_vectors; k++)
+        linear[k] = angular[k] = zero;
+    for (size_t i = 0; i < r->count; i += lanes) {
+        const lane_mask where = are_bits(load_bits(r->candidate + i), UINT32_C(1) << c) &
+                                are_bits(load_bits(r->done + i), RESTS_DONE | RESTS_TOUCHING);
+        if (!any(where))
+            continue;
+        found = true;
+        const real minus_mass = -1 / vec_load(p->inverse_mass + (r->first + i) * p->mass_stride);
+        const real3 at = load_place(x + i, stride, p->axes), arm = minus3(at, from);
+        const real3 impulse = times3(minus_mass, load_place(r->change + i, contact_chunk, 3));
+        real3 moment = cross3(arm, impulse);
+        if (moves) {
+            const size_t end = r->first + i;
+            const real3 way = minus3(load_place(r->step->x + end, p->stride, p->axes), at);
+            const real3 lost = times3(minus_mass, load_place(r->step->v + end, p->stride, p->axes));
+            moment = plus3(moment, cross3(way, lost));
+        }
+        const size_t k = i / lanes % sum_vectors;
+        linear[k] = plus3(linear[k], select3(where, impulse, zero));
+        angular[k] = plus3(angular[k], select3(where, moment, zero));
+    }
+    if (!found)
+        return;
+    double sum[3] = {0}, moment[3] = {0}, arm[3];
+    spring_impulse *const total = &r->setting->impulse[c];
+    sum_lanes(sum, linear);
+    sum_lanes(moment, angular);
+    for (uint32_t a = 0; a < 3; a++)
+        arm[a] = (a < p->axes ? (double)x[a * stride] : 0) - r->setting->origin[c][a];
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, d = (a + 2) % 3;
+        total->linear[a] += sum[a];
+        total->angular[a] += moment[a] + (arm[b] * sum[d] - arm[d] * sum[b]);
+    }
+}
+
+/* colliders: their bits */
+SPRING_CONTACT_INLINE void add_impulses(const resting_chunk *r, uint32_t colliders, const scalar *x, size_t stride,
+                                        bool moves)
+{
+    for (unsigned c = 0; c < r->setting->count; c++)
+        if ((colliders >> c & 1) != 0)
+            add_impulses_of(r, c, x, stride, moves);
 }
 
 static void stop_touching(resting_chunk *r)
 {
-    for_each_candidate(r, stop_on_collider);
+    add_impulses(r, for_each_candidate(r, stop_on_collider), r->place, r->particles->stride, false);
 }
 
 static void detect_pressing(resting_chunk *r)
@@ -823,7 +886,8 @@ static void detect_pressing(resting_chunk *r)
 
 static void advance_resting(resting_chunk *r)
 {
-    for_each_candidate(r, r->step->contacts == WHOLE_STEP_CONTACTS ? rest_in_whole_step : rest_on_collider);
+    rest_step *const step = r->step->contacts == WHOLE_STEP_CONTACTS ? rest_in_whole_step : rest_on_collider;
+    add_impulses(r, for_each_candidate(r, step), r->kept->x0[0], contact_chunk, true);
 }
 
 #endif

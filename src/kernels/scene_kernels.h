@@ -229,8 +229,9 @@ typedef bool particle_kernel(const scene_particles *, const scene_motion *, size
    velocities are predicted in its place. */
 typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t first, size_t count, kept_motion *);
 
-/* RESTS_DONE: the result is complete. The others: how a particle presses on its collider, by find_pressing. */
-typedef enum rest_result { RESTS_DONE = 1, RESTS_PRESSED = 2, RESTS_HELD = 4 } rest_result;
+/* RESTS_DONE: the result is complete. RESTS_TOUCHING: the contact changed the motion. The others: how a particle presses
+   on its collider, by find_pressing. */
+typedef enum rest_result { RESTS_DONE = 1, RESTS_TOUCHING = 2, RESTS_PRESSED = 4, RESTS_HELD = 8 } rest_result;
 
 /* Particles first ... first + count - 1 of a motion that may touch colliders. */
 typedef struct resting_chunk {
@@ -246,13 +247,12 @@ typedef struct resting_chunk {
     bool begins;         /* the clearance is not known yet */
     uint32_t nearby;     /* bits of the colliders that any of these may touch on paths of this length */
     scalar way;          /* [m] a bound on the length of all paths */
-    const scalar *place; /* [m] where stop_resting and find_pressing are: the first particle on the first axis */
+    const scalar *place; /* [m] positions for stop_resting and find_pressing: the first particle on the first axis */
     bool at_end;         /* the stop is at the end of the step */
     uint32_t listed;     /* particles with a candidate */
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that the particle may touch */
     uint32_t done[contact_chunk];      /* bits of rest_result */
-    uint32_t *touched;                 /* by particle, written: the bit of the collider that it touches */
     scalar *change;                    /* [3][contact_chunk], written: [m/s] by the contact; normals of find_pressing */
 } resting_chunk;
 
@@ -260,11 +260,11 @@ typedef struct resting_chunk {
    there is a candidate. */
 typedef bool near_kernel(resting_chunk *);
 
-/* For particles with one candidate; they set `done`. stop_resting completes a kick: it writes v and change.
-   move_resting completes motions of particles that rest or slide: it writes x, v, predicted, touched and change. Of
-   a whole step it also writes x of the motion without contacts, to kept.x0. find_pressing finds particles that press
-   on their collider at the start of a step, where v of the step is their residual; it writes their normals to
-   change. */
+/* Kernels for particles with one candidate. They set `done`, and add impulses to those of the colliders. stop_resting
+   completes a kick: it writes v and change. move_resting completes motions of particles that rest or slide: it writes x,
+   v, predicted and change. For WHOLE_STEP_CONTACTS it also replaces kept.x0 by x of the motion without contacts.
+   find_pressing finds particles that press on their collider at the start of a step, where v of the step is their
+   residual. It adds no impulses, and writes their normals to change. */
 typedef void rest_kernel(resting_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */

@@ -1288,6 +1288,16 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 
 /* ---------------------------------------------------------------------------------------------------------- queries */
 
+bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b)
+{
+    near_point at[3];
+    double nearest = (double)INFINITY;
+    const unsigned found = find_all(p, b, &b->start, p->x0, at);
+    for (unsigned i = 0; i < found; i++)
+        nearest = fmin(nearest, at[i].gap);
+    return nearest <= slop_of(s, p, b);
+}
+
 unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p, bool at_end,
                                  vector3 x, double epsilon, contact_surface surface[most_surfaces])
 {

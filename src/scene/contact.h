@@ -123,6 +123,9 @@ SPRING_INTERNAL void spring_contact_record(const contact_setting *s, const conta
 
 enum { most_surfaces = 16 }; /* that a particle touches; further ones are ignored */
 
+/* Whether a particle at p->x0 touches or is inside a collider at the start of the step. */
+SPRING_INTERNAL bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b);
+
 /* The surfaces of the touched colliders that a particle touches at x, at the start or the end of the drift: those whose
    gap is the least, at most 3 of each collider. Returns their number. */
 SPRING_INTERNAL unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p,

@@ -201,70 +201,16 @@ SPRING_NOINLINE bool advance_alone(const spring_scene *s, const scene_contacts *
     return fine;
 }
 
-/* Removes candidates that masks exclude, and all candidates of pinned particles. */
-static void filter_candidates(const spring_scene *s, const scene_contacts *t, resting_chunk *r)
+/* Removes candidates that masks exclude. */
+static inline void apply_masks(const spring_scene *s, resting_chunk *r)
 {
-    const scene_particles *const p = r->particles;
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
-    for (uint32_t l = 0; l < r->listed; l++) {
-        const size_t k = r->list[l], i = r->first + k;
-        if (p->inverse_mass[i * p->mass_stride] == 0)
-            r->candidate[k] = 0;
-        for (unsigned c = 0; c < t->setting.count && masks != NULL; c++)
-            if ((t->setting.body[c].bits & masks[i]) == 0)
+    for (uint32_t l = 0; l < r->listed && masks != NULL; l++) {
+        const size_t k = r->list[l];
+        for (unsigned c = 0; c < r->setting->count; c++)
+            if ((r->setting->body[c].bits & masks[r->first + k]) == 0)
                 r->candidate[k] &= ~(UINT32_C(1) << c);
     }
-}
-
-static inline void add_moment(double sum[3], vector3 arm, vector3 j) /* arm x j */
-{
-    sum[0] += arm.y * j.z - arm.z * j.y;
-    sum[1] += arm.z * j.x - arm.x * j.z;
-    sum[2] += arm.x * j.y - arm.y * j.x;
-}
-
-static void add_impulse(spring_impulse *sum, const spring_impulse *more)
-{
-    for (int a = 0; a < 3; a++) {
-        sum->linear[a] += more->linear[a];
-        sum->angular[a] += more->angular[a];
-    }
-}
-
-/* Adds the impulses of changes of velocity at x, where `which` is not 0. They also displace particles to x1, with the
-   velocity v1; NULL: they do not. */
-static void add_impulses(const spring_scene *s, const scene_contacts *t, const resting_chunk *r, const uint32_t *which,
-                         const scalar *x, size_t stride, const scalar *x1, const scalar *v1)
-{
-    const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
-    const size_t end_stride = r->particles->stride;
-    const uint32_t axes = r->particles->axes;
-    spring_impulse sum = {{0}, {0}};
-    unsigned c = 0; /* of the sum */
-    for (uint32_t l = 0; l < r->listed; l++) {
-        const size_t k = r->list[l];
-        if (which[k] == 0)
-            continue;
-        if (r->candidate[k] != UINT32_C(1) << c) {
-            add_impulse(&t->setting.impulse[c], &sum);
-            sum = (spring_impulse){{0}, {0}};
-            for (c = 0; r->candidate[k] != UINT32_C(1) << c;)
-                c++;
-        }
-        const double *const origin = t->setting.origin[c];
-        const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
-        const vector3 at = load_vector(x + k, stride, axes);
-        const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
-        const vector3 j = vector_times(-mass, load_vector(r->change + k, contact_chunk, 3));
-        sum.linear[0] += j.x;
-        sum.linear[1] += j.y;
-        sum.linear[2] += j.z;
-        add_moment(sum.angular, arm, j);
-        if (x1 != NULL)
-            add_moment(sum.angular, vector_minus(load_vector(x1 + k, end_stride, axes), at),
-                       vector_times(-mass, load_vector(v1 + k, end_stride, axes)));
-    }
-    add_impulse(&t->setting.impulse[c], &sum);
 }
 
 /* Prepares the arguments of a rest_kernel for a chunk of particles. */
@@ -285,16 +231,22 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
     r->begins = t->begins;
 }
 
-/* Lists particles that touch colliders. Returns their number. */
-static inline uint32_t list_touching(resting_chunk *r, const uint32_t *touched)
+/* Lists free particles that touch colliders, and these as candidates. Returns their number. */
+static inline uint32_t list_touching(const spring_scene *s, resting_chunk *r, const uint32_t *touched)
 {
+    const scene_particles *const p = r->particles;
+    const scalar *const inverse_mass = p->inverse_mass + r->first * p->mass_stride;
     memset(r->done, 0, sizeof r->done);
-    memcpy(r->candidate, touched, r->count * sizeof *touched);
-    r->listed = 0;
+    memset(r->candidate, 0, sizeof r->candidate);
+    r->listed = r->nearby = 0;
     for (size_t k = 0; k < r->count; k++) {
+        const uint32_t bits = inverse_mass[k * p->mass_stride] == 0 ? 0 : touched[k];
+        r->candidate[k] = bits;
+        r->nearby |= bits;
         r->list[r->listed] = (uint8_t)k;
-        r->listed += touched[k] != 0;
+        r->listed += bits != 0;
     }
+    apply_masks(s, r);
     return r->listed;
 }
 
@@ -308,14 +260,11 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     const bool fine = kernel(p, m, from, from + count); /* false: stops may still slow particles down */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
-    list_touching(&r, touched);
-    if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
-        r.place = x + from;
-        r.at_end = at_end;
-        filter_candidates(s, t, &r);
+    r.place = x + from;
+    r.at_end = at_end;
+    list_touching(s, &r, touched);
+    if (m->kick > 0) /* particles that touch one collider, with SIMD vectors */
         kernels->stop_resting(&r);
-        add_impulses(s, t, &r, r.done, r.place, p->stride, NULL, NULL);
-    }
     bool all_fine = true;
     for (size_t l = 0; l < (fine ? r.listed : count); l++) {
         const size_t k = fine ? r.list[l] : l, i = from + k;
@@ -352,19 +301,18 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     if (!kernels->find_near(&r) && fine)
         return true;
     memset(r.done, 0, sizeof r.done);
-    filter_candidates(s, t, &r);
-    if (t->setting.h > 0 && fine) { /* particles that rest or slide on one collider */
-        r.touched = t->touched;
+    apply_masks(s, &r);
+    if (t->setting.h > 0 && fine) /* particles that rest or slide on one collider */
         kernels->move_resting(&r);
-        add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk, m->x + from, m->v + from);
-    }
     bool all_fine = true;
     double way = fine ? (double)r.way : (double)INFINITY;
     for (size_t l = 0; l < (fine ? r.listed : count); l++) {
         const size_t k = fine ? r.list[l] : l, i = from + k;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
-        if (r.done[k] != 0)
+        if (r.done[k] != 0) {
+            t->touched[i] = (r.done[k] & RESTS_TOUCHING) != 0 ? r.candidate[k] : 0;
             continue;
+        }
         if (pinned || (fine && r.candidate[k] == 0)) {
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
@@ -377,6 +325,19 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     return all_fine;
 }
 
+static inline bool any_set(const uint32_t *bits, size_t count)
+{
+    uint64_t all = 0, two[2];
+    size_t k = 0;
+    for (; k + 4 <= count; k += 4) {
+        memcpy(two, bits + k, sizeof two);
+        all |= two[0] | two[1];
+    }
+    for (; k < count; k++)
+        all |= bits[k];
+    return all != 0;
+}
+
 /* Advances a chunk of particles. The kick that ends the previous step is a motion of its own if it stops at colliders,
    so that it has the same results as at the end of a call. */
 static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
@@ -385,13 +346,11 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
 {
     const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
     const uint32_t *const touched = (kicks ? t->touched : t->before) + from;
-    uint32_t any_touched = 0;
-    for (size_t k = 0; k < count && (kicks || m->ends_previous); k++)
-        any_touched |= touched[k];
+    const bool any_touched = (kicks || m->ends_previous) && any_set(touched, count);
     if (kicks)
-        return any_touched == 0 ? kernel(p, m, from, from + count)
-                                : stop_chunk(s, t, kernels, kernel, p, m, from, count, touched, t->x, true);
-    if (any_touched == 0)
+        return !any_touched ? kernel(p, m, from, from + count)
+                            : stop_chunk(s, t, kernels, kernel, p, m, from, count, touched, t->x, true);
+    if (!any_touched)
         return move_chunk(s, t, kernels, kernel, p, m, from, count);
     scene_motion step = *m;
     const bool fine = stop_chunk(s, t, kernels, kernels->implicit_kick, p, m, from, count, touched, m->x0, false);

@@ -15,12 +15,10 @@
 #define SPRING_NOINLINE            static __attribute__((noinline, unused)) /* one copy for all callers of a file */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #define SPRING_PREFETCH(address)   __builtin_prefetch(address)
-#define SPRING_LOWEST_BIT(bits)    (unsigned)__builtin_ctz(bits) /* of an unsigned number other than 0 */
 #else
 #define SPRING_NOINLINE            static
 #define SPRING_UNLIKELY(condition) (condition)
 #define SPRING_PREFETCH(address)   (void)(address)
-#define SPRING_LOWEST_BIT(bits)    0u /* a vector has one lane */
 #endif
 
 /* Before a loop whose arrays should be kept in registers. For RISC-V without vectors, clang does not unroll such a
