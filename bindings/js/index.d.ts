@@ -103,7 +103,10 @@ export declare class Spring {
     /** The place of the target at the end of the next step. A new target keeps value and velocity. */
     target: number;
 
-    /** The velocity of the target, default 0. To follow a moving target without lag, set both before each step. */
+    /**
+     * The mean velocity of the target in the next step, (target - previous target)/dt, default 0. To follow a moving target
+     * without lag, set both before each step.
+     */
     targetVelocity: number;
 
     /** Whether the value is at rest on its target. step() has no effect then. A new target makes it false until a step. */

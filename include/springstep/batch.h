@@ -124,10 +124,10 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
  *     x[i]'' = accel[i] - omega2[i] (x[i] - target[i]) - gamma[i] x[i]'
  *
  * Spring i is advanced like the single spring {1, omega2[i], gamma[i], accel[i]} by spring_follow() with a target
- * velocity of 0, and lands by the same rule. In double precision the result is bit-identical. Its rest position is
- * target[i] + accel[i]/omega2[i], and exactly target[i] without accel. After the step, a spring within x_tol of its
- * rest position whose speed is at most v_tol is placed at its rest position with v = 0. Without stiffness, a spring
- * with a load never rests, and a spring without load rests on its target only.
+ * velocity of 0, and is placed on its target by the same rule. In double precision the result is bit-identical. Its
+ * rest position is target[i] + accel[i]/omega2[i], and exactly target[i] without accel. After the step, a spring
+ * within x_tol of its rest position whose speed is at most v_tol is placed at its rest position with v = 0. Without
+ * stiffness, a spring with a load never rests, and a spring without load rests on its target only.
  *
  * Coefficients are shared as in spring_batch_advance(). As in spring_batch_advance(), each spring fails independently.
  * A spring also fails if its target is not finite. With dt = 0 nothing moves, and the springs are counted in their
@@ -148,9 +148,9 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
 SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double *target, double dt, double x_tol,
                                              double v_tol, size_t *moving);
 
-/** The single-precision version. Its landing rule has the ulp of float, FLT_MIN instead of DBL_MIN, and 2^-11 instead of
-   2^-16. A spring is therefore placed from at most 2304 ulps away, less than 0.03 % of the larger of |x| and |rest
-   position|. It may stop before this if slow dt < 2^-11: half-lives above 23 s at 60 Hz, 5.9 s at 240 Hz and 0.029 s at
+/** The single-precision version. The rule by which springs are placed on their targets has the ulp of float, FLT_MIN
+   instead of DBL_MIN, and 2^-11 instead of 2^-16. A spring is therefore placed from at most 2304 ulps away, less than
+   0.03 % of the larger of |x| and |rest position|. It may stop before this if slow dt < 2^-11: half-lives above 23 s at 60 Hz, 5.9 s at 240 Hz and 0.029 s at
    48 kHz. Rest positions are computed in float and tolerances are rounded to float; dt is not rounded. */
 SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
                                               double v_tol, size_t *moving);
@@ -165,7 +165,7 @@ SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const floa
  * rest position whose velocity differs from that of its target by at most v_tol is placed at its rest position with the
  * velocity of its target. It counts as moving while that velocity is not 0.
  *
- * The springs are advanced with SIMD. Targets are added and landings are decided spring by spring.
+ * The springs are advanced with SIMD. Targets are added, and springs placed on them, spring by spring.
  *
  * @param[in] target_velocity  [count] mean velocities of the targets in the step, (target - previous target)/dt [m/s];
  *                             must not overlap x or v. NULL: 0, as in spring_batch_follow()

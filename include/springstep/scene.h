@@ -33,7 +33,7 @@
  *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
  *    accept a const scene, while no thread changes it.
  *  - No function needs more than 16 KiB of the stack, compiled by gcc 12 or clang 14 with optimisation
- *    (tests/scene/test_stack.c). At most as much is in use when a callback is called.
+ *    (tests/scene/test_stack.c). At most 16 KiB are in use when a callback is called.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the
  *    callback are.
  *  - Particles collide with colliders: planes, spheres, capsules, boxes, and bodies that a function describes. They do
@@ -151,10 +151,10 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
    all positions and velocities become NaN, and no step succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/** Promises that the callback does not use velocities. Also set it for a scene that never has a callback. Leapfrog then
-   keeps the forces at the end of a step for the next step, which halves the force evaluations. Leapfrog also needs no
-   memory for predicted velocities, unless a link is damped or the scene is editable. The velocities that the callback
-   receives are unspecified. */
+/** Promises that the callback does not use velocities. Leapfrog then keeps the forces at the end of a step for the next
+   step, which halves the force evaluations; without a callback, it always does. Leapfrog also needs no memory for
+   predicted velocities, unless a link is damped or the scene is editable, so the flag saves memory in scenes that never
+   have a callback, too. The velocities that the callback receives are unspecified. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
@@ -210,8 +210,8 @@ typedef struct spring_collider {
                                 segment) to the velocity of their surface */
     double friction;        /**< Coulomb coefficient >= 0 */
     double restitution;     /**< 0 to 1: ratio of the normal speeds after and before an impact */
-    double acceleration[3]; /**< [m/s^2] of `at`, at + velocity t + acceleration t^2/2, and also of `to`: one for both
-                                ends of a capsule */
+    double acceleration[3]; /**< [m/s^2] of `at`, at + velocity t + acceleration t^2/2, and also of `to` of a
+                                capsule */
     double spin_acceleration[3]; /**< [rad/s^2] turned by the vector spin t + spin_acceleration t^2/2 */
     double surface[3];           /**< [m/s] further velocity of the surface in the frame of the body, as of a conveyor
                                     belt. Its normal part is ignored. The frame of a plane, a sphere or a capsule has
@@ -312,7 +312,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *                       x1 = x + dt v + dt^2 sum b_j A_j,   v1 = v + dt sum b'_j A_j
  *     SRKN6             v += dt b_i a(x),   x += dt a_i v,   i = 1 ... 11;   v1 = v + dt b_12 a(x1)
  *
- * Here a is the acceleration of a particle, and each line is evaluated from left to right.
+ * Here a(...) is the acceleration of a particle, and a_ij, a_i, b_i and c_i are the coefficients of the method. Each
+ * line is evaluated from left to right.
  *
  * Drag is implicit in the kick of symplectic Euler and in the last half kick of leapfrog. In the same half kick of
  * leapfrog, link damping and callbacks use predicted velocities: v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), where a*
@@ -320,21 +321,22 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * order. Held forces act like gravity, in every kick and stage.
  *
  * Leapfrog with heavy link damping. Explicit link damping is used for dt G <= 0.4 and dt D <= 0.9 (1 - dt^2 L/4), with
- * L as in spring_scene_stable_step(). G is the same sum of the damping of links, and D = G plus the largest drag/mass.
- * For a larger dt, a step is a drift for dt/2, one kick, and a drift for dt/2. The kick is v1 = v0 + dt p(dt Z) r,
- * where r is the acceleration at the positions after the first drift and at v0, Z is the damping matrix of the links
- * in their directions there, divided by the masses, and p(z) approximates (1 - e^-z)/z by a Chebyshev series. A
- * correction for the rotation of links during the step is included. Leapfrog is therefore stable for dt < 2/sqrt(L) at
- * any link damping, and a link that creeps does so at the rate stiffness/damping. The kick adds no energy. Where
- * damped links turn during the step, the correction may add some energy. The step has order 2 for dt G up to about 3.
- * Beyond, the order falls to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for
- * dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no
- * force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and
- * with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
+ * L as in spring_scene_stable_step(). G is the largest sum of 2 damping/mass over the links of a free particle, and D
+ * is the largest such sum plus drag/mass. For a larger dt, a step is a drift for dt/2, one kick, and a drift for dt/2.
+ * The kick is v1 = v0 + dt p(dt Z) r, where r is the acceleration at the positions after the first drift and at v0, Z
+ * is the damping matrix of the links in their directions there, divided by the masses, and p(z) approximates (1 -
+ * e^-z)/z by a Chebyshev series. A correction for the rotation of links during the step is included. Leapfrog is
+ * therefore stable for dt < 2/sqrt(L) at any link damping, and a link that creeps does so at the rate
+ * stiffness/damping. The kick adds no energy. Where damped links turn during the step, the correction may add some
+ * energy. The step has order 2 for dt G up to about 3. Beyond, the order falls to 1 (tests/scene/test_damping.c). A
+ * step evaluates forces once, and damping alone once for dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond.
+ * Positions, velocities and time are then the whole state: no force is kept. Callbacks are called at t + dt/2. A
+ * callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series is computed twice. A
+ * negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
- * damping of a link is reduced by the larger excess of its ends. Such a link relaxes within about
- * 30000 mass/(stiffness dt^2) steps.
+ * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
+ * with its own sum G, but at most 1. Such a link relaxes within about 30000 mass/(stiffness dt^2) steps.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
@@ -401,17 +403,17 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * is replaced by |weight| of the particle times the sum of |weight| over the free particles of the link.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
- *     G [1/s]    sum of 2 damping/mass, plus drag/mass
+ *     D [1/s]    sum of 2 damping/mass, plus drag/mass
  *     K [N/m]    sum of 2 stiffness
  *
  * The bounds are:
  *
  *     leapfrog          2/sqrt(L)
- *     RK4               2.61/max(sqrt(L), G)
- *     RKN8              min(3.14/sqrt(L), 40/G)
- *     SRKN6             min(9.07/sqrt(L), 20/G)
- *     Euler             min(drag/K, 2/G) with drag, else 0
- *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G without drag) - drag/(largest mass)
+ *     RK4               2.61/max(sqrt(L), D)
+ *     RKN8              min(3.14/sqrt(L), 40/D)
+ *     SRKN6             min(9.07/sqrt(L), 20/D)
+ *     Euler             min(drag/K, 2/D) with drag, else 0
+ *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = G - drag/(largest mass), G: D without drag
  *
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
@@ -423,12 +425,12 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered;
  * docs/games.md has a bound with them.
  *
- * At rest without link damping, the stability limit is larger than the bound. With leapfrog, symplectic Euler and
- * SRKN6, it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times
- * for such a cloth and 2 times for such a soft body; with RK4 and RKN8 it is larger. It is closer to the bound with
- * fewer springs or under tension: the ratio is 1 for a rope and for a height field of structural springs only, and 1.4
- * for a cloth that is stretched by half. With heavy damping, the limit may be several times the bound, but
- * not for leapfrog with drag alone.
+ * At rest without link damping, the stability limit is at least the bound. With leapfrog, symplectic Euler and SRKN6,
+ * it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times for
+ * such a cloth and 2 times for such a soft body; with RK4 and RKN8 it is larger. It is closer to the bound with fewer
+ * springs or under tension: the ratio is 1 for a rope and for a height field of structural springs only, and 1.4 for a
+ * cloth that is stretched by half. With heavy damping, the limit may be several times the bound, but not for leapfrog
+ * with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -544,10 +546,13 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * is inside a collider is moved to its surface in the next step. The move adds no velocity, but a velocity into the
  * body is then treated as an impact. Pinned particles pass through colliders.
  *
- * To set colliders once per frame of length T, give the present pose, the present velocity V, and the acceleration that
- * leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and spin_acceleration. If V is not
- * known, use (next - previous)/(2 T) and (next - 2 present + previous)/T^2. A velocity without acceleration is enough
- * for bodies that nothing rests on: static friction breaks where the velocity jumps from frame to frame.
+ * To set colliders once per frame of length T, give the present pose, the present velocity V of the body, and the
+ * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and
+ * spin_acceleration. If V is not known, use (next - previous)/(2 T) and (next - 2 present + previous)/T^2, or take the
+ * pose and the velocity V that the collider has reached, with the acceleration 16/9 (next - present - V T)/T^2: an
+ * error of the pose or of V then shrinks to about a third in each frame, while 2 in the place of 16/9 would keep the
+ * error of V and change its sign in each frame. A velocity without acceleration is enough for bodies that nothing
+ * rests on: static friction breaks where the velocity jumps from frame to frame.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
  * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed,
@@ -564,10 +569,10 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * counts as several bodies only where it returns several contacts. Links do not collide, so a thin collider can pass
  * between two particles. A step with negative dt does not undo a step.
  *
- * A custom body is followed along the path by its gaps, but by at least half of `thickness`, so no particle passes
- * through it. The function is called a few times for a particle that rests, and at most 1500 times per step. If it is
- * called more often, the particle stops at the last point that is known to be outside. A gap or a normal that is not
- * finite makes the step fail with SPRING_ENONFINITE, or SPRING_EUNSTABLE in a scene with max_speed.
+ * The path of a particle near a custom body is searched in steps of the gap, at least half of `thickness`, so no
+ * particle passes through it. The function is called a few times for a particle that rests, and at most 1500 times per
+ * step. If more calls would be needed, the particle stops at the last point that is known to be outside. A gap or a
+ * normal that is not finite makes the step fail with SPRING_ENONFINITE, or SPRING_EUNSTABLE in a scene with max_speed.
  *
  * With restitution 1, no friction and no damping, energy is not conserved: it grows, and it grows faster with longer
  * steps. See docs/evidence.md.
@@ -685,7 +690,7 @@ SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t
  * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
  * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
  *
- * If no banded link tears, the lengths of banded links are compared with SIMD. For bands see
+ * Banded links are first compared with SIMD, and one by one only if one of them may be too long. For bands see
  * spring_links_renumber().
  *
  * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
@@ -781,7 +786,7 @@ SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /** @} */
 
-/** @defgroup scene_save States that travel
+/** @defgroup scene_save Saved states
  * @{ */
 
 /** What spring_scene_describe() returns. */
@@ -1194,9 +1199,9 @@ SPRING_API spring_status spring_bend_rod(size_t particles, uint32_t axes, const 
  *     SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS   8 D/(3 h^2) along rows and columns, 2 D/(3 h^2) along diagonals
  *     SPRING_BEND_ROWS                           4 D/h^2 along rows and columns
  *
- * It is half as large along the edges of the sheet, and twice at clamps. With diagonals this is an isotropic plate of
- * Poisson ratio 1/3. Rows and columns alone cost half as much and bend along their directions as a plate of Poisson
- * ratio 0, but along a diagonal only half as stiffly, and they do not resist twisting. Their links form bands.
+ * It is half as large along the edges of the sheet, and twice as large at clamps. With diagonals this is an isotropic
+ * plate of Poisson ratio 1/3. Rows and columns alone cost half as much and bend along their directions as a plate of
+ * Poisson ratio 0, but along a diagonal only half as stiffly, and they do not resist twisting. Their links form bands.
  *
  * @param[in]     g             the grid; its links need not exist
  * @param[in]     pinned        [particles], as from spring_grid_fill(); NULL: none

@@ -300,7 +300,8 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  * along its fast mode, so this mode determines the step; a start at rest would allow longer steps.
  *
  * @param[in] duration   > 0 [s]
- * @param[in] tolerance  > 0, relative to the start; above 1, the error of a shorter step may exceed it by up to 1 %
+ * @param[in] tolerance  > 0, relative to the start; above 1, shorter steps may have an error of up to 1.01 times the
+ *                       tolerance
  * @return time step [s]. 0: there is none, because the rounding error of n steps, sqrt(n) eps, exceeds the tolerance,
  *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered
  *         for one spring.

@@ -8,8 +8,8 @@
  *
  *           Most chunks of particles are far from most colliders. The clearance of a chunk from a collider is a lower
  *           bound on the distance of its particles from the core at the start of a step. It is kept during a call: a step
- *           reduces it by the longest path and by the displacement of the core. While it is longer than the inequality
- *           asks for, the collider is left out. This changes no result.
+ *           reduces it by the longest path and by the displacement of the core. The collider is left out while the
+ *           clearance exceeds the right side of the inequality. This changes no result.
  */
 #ifndef SPRINGSTEP_CONTACT_NEAR_TMPL_H
 #define SPRINGSTEP_CONTACT_NEAR_TMPL_H

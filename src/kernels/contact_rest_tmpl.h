@@ -499,10 +499,12 @@ typedef struct picked_particles {
     bool consecutive;
 } picked_particles;
 
-/* Always true with at most two lanes. */
+/* One of at most two lanes is half of them. */
+enum { always_consecutive = lanes <= 2 };
+
 SPRING_CONTACT_INLINE bool are_consecutive(const picked_particles *l)
 {
-    return lanes <= 2 || l->consecutive;
+    return always_consecutive || l->consecutive;
 }
 
 SPRING_NOINLINE void pick_each(const picked_particles *l, const scalar *from, size_t stride, uint32_t axes, real *to)
@@ -790,12 +792,13 @@ SPRING_NOINLINE uint32_t for_each_candidate(resting_chunk *r, rest_step *step)
             }
             found |= UINT32_C(1) << c;
             l.place[0] = i;
-            if (2 * many < lanes)
+            if (!always_consecutive && 2 * many < lanes)
                 listed += many;
             else
                 store_bits(r->done + i, load_bits(r->done + i) | step(r, &l, c));
         }
-        step_listed(r, c, list, listed, step);
+        if (!always_consecutive)
+            step_listed(r, c, list, listed, step);
     }
     return found;
 }
@@ -803,65 +806,51 @@ SPRING_NOINLINE uint32_t for_each_candidate(resting_chunk *r, rest_step *step)
 /* The partial sums of impulses, by the place in the chunk, so that they do not depend on the vector width. */
 enum { impulse_sums = 8, sum_vectors = impulse_sums > lanes ? impulse_sums / lanes : 1 };
 
-SPRING_CONTACT_INLINE void sum_lanes(double sum[3], const real3 part[sum_vectors])
-{
-    for (int k = 0; k < sum_vectors; k++) {
-        scalar x[lanes], y[lanes], z[lanes];
-        vec_store(x, part[k].x);
-        vec_store(y, part[k].y);
-        vec_store(z, part[k].z);
-        for (size_t j = 0; j < lanes; j++) {
-            sum[0] += (double)x[j];
-            sum[1] += (double)y[j];
-            sum[2] += (double)z[j];
-        }
-    }
-}
-
 /* Adds the impulses of the changes of velocity of particles at x to collider c. `moves`: the contact also moved them, to x
    of the step. Moments are summed about the first particle of the chunk, which single precision resolves better than a
    distant origin. */
 SPRING_NOINLINE void add_impulses_of(const resting_chunk *r, unsigned c, const scalar *x, size_t stride, bool moves)
 {
     const scene_particles *const p = r->particles;
-    const real3 zero = zero_lanes();
     const real3 from = {splat(x[0]), splat(x[stride]), splat(p->axes > 2 ? x[2 * stride] : 0)};
-    real3 linear[sum_vectors], angular[sum_vectors];
-    bool found = false;
+    real sum[sum_vectors][6];
     for (int k = 0; k < sum_vectors; k++)
-        linear[k] = angular[k] = zero;
+        for (int q = 0; q < 6; q++)
+            sum[k][q] = splat(0);
     for (size_t i = 0; i < r->count; i += lanes) {
         const lane_mask where = are_bits(load_bits(r->candidate + i), UINT32_C(1) << c) &
                                 are_bits(load_bits(r->done + i), RESTS_DONE | RESTS_TOUCHING);
         if (!any(where))
             continue;
-        found = true;
         const real minus_mass = -1 / vec_load(p->inverse_mass + (r->first + i) * p->mass_stride);
-        const real3 at = load_place(x + i, stride, p->axes), arm = minus3(at, from);
+        const real3 at = load_place(x + i, stride, p->axes);
         const real3 impulse = times3(minus_mass, load_place(r->change + i, contact_chunk, 3));
-        real3 moment = cross3(arm, impulse);
+        real3 moment = cross3(minus3(at, from), impulse);
         if (moves) {
             const size_t end = r->first + i;
             const real3 way = minus3(load_place(r->step->x + end, p->stride, p->axes), at);
             const real3 lost = times3(minus_mass, load_place(r->step->v + end, p->stride, p->axes));
             moment = plus3(moment, cross3(way, lost));
         }
-        const size_t k = i / lanes % sum_vectors;
-        linear[k] = plus3(linear[k], select3(where, impulse, zero));
-        angular[k] = plus3(angular[k], select3(where, moment, zero));
+        const real each[6] = {impulse.x, impulse.y, impulse.z, moment.x, moment.y, moment.z};
+        for (int q = 0; q < 6; q++)
+            sum[i / lanes % sum_vectors][q] += select_real(where, each[q], splat(0));
     }
-    if (!found)
-        return;
-    double sum[3] = {0}, moment[3] = {0}, arm[3];
-    spring_impulse *const total = &r->setting->impulse[c];
-    sum_lanes(sum, linear);
-    sum_lanes(moment, angular);
+    double total[6] = {0}, arm[3];
+    for (int k = 0; k < sum_vectors; k++)
+        for (int q = 0; q < 6; q++) {
+            scalar part[lanes];
+            vec_store(part, sum[k][q]);
+            for (size_t j = 0; j < lanes; j++)
+                total[q] += (double)part[j];
+        }
+    spring_impulse *const of_body = &r->setting->impulse[c];
     for (uint32_t a = 0; a < 3; a++)
         arm[a] = (a < p->axes ? (double)x[a * stride] : 0) - r->setting->origin[c][a];
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, d = (a + 2) % 3;
-        total->linear[a] += sum[a];
-        total->angular[a] += moment[a] + (arm[b] * sum[d] - arm[d] * sum[b]);
+        of_body->linear[a] += total[a];
+        of_body->angular[a] += total[3 + a] + (arm[b] * total[d] - arm[d] * total[b]);
     }
 }
 

@@ -167,7 +167,7 @@ typedef struct scene_damped_drift {
     const scalar *loss; /* e^(-drag drift) - 1 */
 } scene_damped_drift;
 
-/* A bound on a collider during a drift, by which particles are found that may touch it: see contact_body. */
+/* Bounds of a collider during a drift, to find particles that may touch it: see contact_body. */
 typedef struct collider_bound {
     spring_shape shape;                /* SPRING_SPHERE for custom bodies */
     scalar at[3], shift[3];            /* [m] at the start of the drift, and its displacement */
@@ -179,9 +179,9 @@ typedef struct collider_bound {
 
 typedef struct collider_bounds {
     unsigned count;
-    /* Upper bounds: [m] displacements of the core in the step; particles on a path of the length d touch nothing at
-       distances above wide [m] + factor d. */
-    scalar displacement[most_colliders], wide[most_colliders], factor[most_colliders];
+    scalar displacement[most_colliders]; /* [m] of the core in the step, an upper bound */
+    /* A particle with a path of length d that is farther away than wide [m] + factor d touches nothing. */
+    scalar wide[most_colliders], factor[most_colliders];
     scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, extended by the radius of particles */
     collider_bound each[most_colliders];                    /* [colliders of the definition] */
 } collider_bounds;

@@ -2,9 +2,11 @@
 /*
  * Contacts of particles with rigid colliders: constraints on the drift, with the time of impact.
  *
- * Symbols   x0 is the position of a particle, w its velocity after the kick, a the acceleration of that kick, d = h w
- *           the displacement, V the velocity of the surface, n the normal, u = w - V, and theta the fraction of the
- *           step before the contact. v0 is the velocity at the start of the step. R and c are the rotation and the origin of the frame of the body.
+ * Symbols   x0 is the position of a particle, v0 its velocity at the start of the step and w after the kick, a the
+ *           acceleration of that kick, h the step, d = h w the displacement, V the velocity of the surface, n the normal,
+ *           and theta the fraction of the step before the contact. u is a velocity relative to V, and u_t its component
+ *           along the surface. e is the restitution and mu the friction. R and c are the rotation and the origin of the
+ *           frame of the body.
  * Frame     All distances are computed in the frame of the body, where it is at rest: y = R^T (x - c) at the start and
  *           at the end of the step. The path is defined as the chord y0 + theta (y1 - y0). The gap to a convex body
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
@@ -13,24 +15,24 @@
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
  *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
  *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
- *           3. Impact, if n.u < 0 at theta, u = v0 + theta h a - V: the impulse is -(1 + e) n.u n times the
- *              mass, with friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has
+ *           3. Impact, if n.u < 0, with u = v0 + theta h a - V, at a second contact w - V: the impulse is
+ *              -(1 + e) n.u n times the mass, with friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has
  *              the changed velocity.
  *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
  *              is lambda n, with the lambda for which the path ends on the surface. Late, in the second half of the
- *              step, at a second contact in the step, or after 1: the path is projected to the tangent plane, and w
+ *              step, at a second contact in the step, or after item 1: the path is projected to the tangent plane, and w
  *              loses its component into the collider.
  *           5. Colliders are tested again with a path that others changed. A particle that is still inside at the end
  *              (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
- *           |A| <= F. w is such that the last kick ends on the velocity at the end. A particle that sticks from the
+ *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
  *           start is carried by the rigid motion.
  * Kick      The last kick, for colliders that were touched: v loses its components into them, by the least change
  *           with n_i.v >= n_i.V_i, with friction of at most mu times each of these. Static friction gives v = V.
  * Impulses  A contact that changes the end of the path from x to x1 and the velocity from w to w1 gives its collider the
- *           impulse m (w - w1) and the angular impulse m (x * w - x1 * w1), where * is the vector product. A free path keeps x * w, so this is exact for
- *           changes at any time of the step, and for displacements.
+ *           impulse m (w - w1) and the angular impulse m cross(x, w) - m cross(x1, w1). A free path keeps cross(x, w),
+ *           so this is exact for changes at any time of the step, and for displacements.
  * Order     2 with leapfrog and RK4, also across impacts, with sliding friction, and across reversals: docs/evidence.md.
  * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
  *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983); rotations: Rodrigues (1840). The closed forms are
@@ -115,12 +117,12 @@ SPRING_INLINE double length3(vector3 a)
     return spring_sqrt(inner(a, a));
 }
 
-SPRING_INLINE double largest_of(vector3 a) /* the sum of the sizes of its components */
+SPRING_INLINE double size_sum(vector3 a) /* the sum of the sizes of its components */
 {
     return fabs(a.x) + fabs(a.y) + fabs(a.z);
 }
 
-SPRING_INLINE vector3 outer(vector3 a, vector3 b)
+SPRING_INLINE vector3 cross(vector3 a, vector3 b)
 {
     return (vector3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -191,8 +193,8 @@ static rotation_factors factors_of(double square)
 /* a turned by the vector phi (Rodrigues). */
 static vector3 turned(vector3 phi, const rotation_factors *f, vector3 a)
 {
-    const vector3 b = outer(phi, a);
-    return add_scaled(add_scaled(a, f->first, b), f->second, outer(phi, b));
+    const vector3 b = cross(phi, a);
+    return add_scaled(add_scaled(a, f->first, b), f->second, cross(phi, b));
 }
 
 static bool is_zero(vector3 a)
@@ -232,8 +234,8 @@ static void find_pose(body_pose *p, const spring_collider *c, const vector3 axis
     const rotation_factors f = factors_of(inner(*phi, *phi));
     for (int i = 0; i < 3; i++)
         p->axis[i] = turned(*phi, &f, axis[i]);
-    const vector3 b = outer(*phi, rate);
-    p->spin = add_scaled(add_scaled(rate, f.second, b), f.third, outer(*phi, b));
+    const vector3 b = cross(*phi, rate);
+    p->spin = add_scaled(add_scaled(rate, f.second, b), f.third, cross(*phi, b));
 }
 
 /* The axes at the time when the collider was set. */
@@ -250,9 +252,9 @@ static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
         return;
     axis[0] = vector_of(c->axis[0], flat);
     const vector3 other = fabs(axis[0].x) < 0.6 ? (vector3){1, 0, 0} : (vector3){0, 1, 0};
-    const vector3 side = flat ? (vector3){-axis[0].y, axis[0].x, 0} : outer(axis[0], other);
+    const vector3 side = flat ? (vector3){-axis[0].y, axis[0].x, 0} : cross(axis[0], other);
     axis[1] = scale(1 / length3(side), side);
-    axis[2] = outer(axis[0], axis[1]);
+    axis[2] = cross(axis[0], axis[1]);
 }
 
 /* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. */
@@ -264,10 +266,10 @@ static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
     const double cosine = inner(from, to) / (before * after);
     if (is_zero(subtract(from, to)) || !(before > 0) || !(after > 0) || !(cosine > -0.5))
         return;
-    const vector3 v = scale(1 / (before * after), outer(from, to));
+    const vector3 v = scale(1 / (before * after), cross(from, to));
     for (int i = 0; i < 3; i++) {
-        const vector3 a = b->start.axis[i], once = outer(v, a);
-        b->end.axis[i] = add_scaled(add(a, once), 1 / (1 + cosine), outer(v, once));
+        const vector3 a = b->start.axis[i], once = cross(v, a);
+        b->end.axis[i] = add_scaled(add(a, once), 1 / (1 + cosine), cross(v, once));
     }
     b->end.segment = scale(after / before, from);
     b->turns = b->turns || !is_zero(v);
@@ -326,8 +328,7 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
 /* [m] The size of numbers that its distances are computed from. */
 static double size_at(const contact_body *b, const body_pose *pose)
 {
-    double size =
-        largest_of(pose->at) + b->radius + largest_of(pose->segment) + (is_custom(b->shape) ? b->thickness : 0);
+    double size = size_sum(pose->at) + b->radius + size_sum(pose->segment) + (is_custom(b->shape) ? b->thickness : 0);
     for (int a = 0; a < (b->flat ? 2 : 3) && b->shape == SPRING_BOX; a++)
         size += b->half[a];
     return size;
@@ -440,7 +441,7 @@ static unsigned find_custom(contact_particle *p, const contact_body *b, vector3 
     count = count > 3 ? 3 : count;
     for (unsigned i = 0; i < count; i++) {
         out[i] = (near_point){gap[i] - b->radius - p->radius, vector_of(normal[i], b->flat), 0};
-        finite = finite && spring_finite(out[i].gap) && spring_finite(largest_of(out[i].normal));
+        finite = finite && spring_finite(out[i].gap) && spring_finite(size_sum(out[i].normal));
     }
     if (finite)
         return count;
@@ -511,7 +512,7 @@ static unsigned find_all(contact_particle *p, const contact_body *b, const body_
 /* [m] Gaps below this are rounding errors. */
 SPRING_INLINE double slop_at(const contact_setting *s, vector3 x, double size, double particle_radius)
 {
-    return 8 * s->epsilon * (largest_of(x) + size + particle_radius);
+    return 8 * s->epsilon * (size_sum(x) + size + particle_radius);
 }
 
 SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, const contact_body *b)
@@ -531,7 +532,7 @@ static double gap_tolerance(const contact_setting *s, const contact_particle *p,
 SPRING_INLINE vector3 frame_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x)
 {
     const vector3 v = b->shape == SPRING_CAPSULE ? add_scaled(pose->velocity, along, pose->stretching) : pose->velocity;
-    return b->turns && b->shape != SPRING_CAPSULE ? add(v, outer(pose->spin, subtract(x, pose->at))) : v;
+    return b->turns && b->shape != SPRING_CAPSULE ? add(v, cross(pose->spin, subtract(x, pose->at))) : v;
 }
 
 /* [m/s] Velocity of the surface relative to the frame, at x. n: in the scene */
@@ -541,7 +542,7 @@ SPRING_INLINE vector3 slip_velocity(const contact_body *b, const body_pose *pose
     vector3 v = tangential(round ? b->surface : direction_out(pose, b->surface), n);
     if (round) {
         const vector3 centre = add_scaled(pose->at, along, pose->along);
-        v = add(v, outer(pose->spin, subtract(x, centre)));
+        v = add(v, cross(pose->spin, subtract(x, centre)));
     }
     return v;
 }
@@ -554,8 +555,8 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-/* The moment is (x - x1) * w1 + (x - origin) * (w - w1). In the first term,
-   w1 + kick is the velocity at the end of the step. */
+/* The moment is cross(x - x1, w1) + cross(x - origin, w - w1). In the first term w1 is replaced by w1 + kick, the
+   velocity at the end of the step. */
 void spring_contact_record(const contact_setting *s, const contact_particle *p, unsigned i, const vector3 *x,
                            const vector3 *w, const vector3 *x1, const vector3 *w1)
 {
@@ -564,7 +565,7 @@ void spring_contact_record(const contact_setting *s, const contact_particle *p, 
     const double *const origin = s->origin[i];
     const vector3 arm = {x->x - origin[0], x->y - origin[1], x->z - origin[2]};
     const vector3 change = subtract(*w, *w1), way = subtract(*x, *x1);
-    const vector3 moment = add(outer(arm, change), outer(way, add(*w1, p->kick)));
+    const vector3 moment = add(cross(arm, change), cross(way, add(*w1, p->kick)));
     double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
     linear[0] += p->mass * change.x;
     linear[1] += p->mass * change.y;
@@ -594,7 +595,7 @@ SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, doub
     out->mean = out->kick = zero3;
     if (is_zero(u0) && inner(A, A) <= F * F)
         return;
-    const vector3 across = outer(u0, A);
+    const vector3 across = cross(u0, A);
     const double square = inner(u0, u0);
     const bool turns = square < 64 * F * F && inner(across, across) > 1e-24 * square * inner(A, A);
     const int parts = turns ? most_parts : 1;
@@ -695,7 +696,7 @@ static double gap_at_end(contact_particle *p, const contact_body *b, near_point 
     return at->gap;
 }
 
-/* The way of the nearest point of a capsule that becomes longer is not part of the particle's. */
+/* Subtracts the motion of the nearest point when a capsule changes its length. */
 SPRING_INLINE double approach(const meeting *m)
 {
     const contact_body *const b = m->b;
@@ -784,7 +785,7 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
         return false;
     if (m->gap < m->slop)
         m->gap = 0;
-    /* Rounding errors of many steps are taken back, so that they stay below the slop. */
+    /* Rounding errors of many steps are corrected, so that they stay below the slop. */
     if (m->fraction == 0 && fabs(m->at.gap) > m->slop / 2 && m->push == 0)
         m->gap = m->at.gap;
     m->left = (1 - m->fraction) * s->h;
@@ -878,7 +879,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         if (b->turns && b->shape != SPRING_CAPSULE)
             slip = scale(0.5, add(slip, slip_velocity(b, &b->end, m->at.along, x0, m->n)));
         else if (b->shape != SPRING_PLANE)
-            slip = add_scaled(slip, m->left / 2, outer(b->start.spin, slip));
+            slip = add_scaled(slip, m->left / 2, cross(b->start.spin, slip));
     }
     /* way along the surface, relative to it; velocity at the start, and its change by other forces */
     const vector3 way = direction_out(&b->end, subtract(end_in_frame(b, p), m->place));
@@ -1078,7 +1079,7 @@ static vector3 least_change(constraint *c, unsigned count)
             return change;
     for (unsigned i = 0; i < count; i++)
         for (unsigned j = i + 1; j < count; j++) {
-            const vector3 across = outer(c[i].n, c[j].n);
+            const vector3 across = cross(c[i].n, c[j].n);
             const double cosine = inner(c[i].n, c[j].n), det = inner(across, across); /* 1 - cosine^2 */
             const double value[3] = {(c[i].least - cosine * c[j].least) / det,
                                      (c[j].least - cosine * c[i].least) / det};
@@ -1088,7 +1089,7 @@ static vector3 least_change(constraint *c, unsigned count)
     for (unsigned i = 0; i < count; i++)
         for (unsigned j = i + 1; j < count; j++)
             for (unsigned k = j + 1; k < count; k++) {
-                const vector3 jk = outer(c[j].n, c[k].n), ki = outer(c[k].n, c[i].n), ij = outer(c[i].n, c[j].n);
+                const vector3 jk = cross(c[j].n, c[k].n), ki = cross(c[k].n, c[i].n), ij = cross(c[i].n, c[j].n);
                 const double det = inner(c[i].n, jk);
                 if (!(fabs(det) > 1e-10))
                     continue;
@@ -1107,7 +1108,7 @@ static vector3 least_change(constraint *c, unsigned count)
     return change;
 }
 
-/* Adds the contacts at x with collider i, unless they are farther away than `most` beyond the nearest. */
+/* Adds the contacts at x with collider i whose gaps are at most `most` larger than the smallest. */
 static unsigned add_constraints(contact_particle *p, const contact_body *b, unsigned i, bool at_end, vector3 x,
                                 double most, constraint *c, unsigned count)
 {
@@ -1152,7 +1153,7 @@ static void stop_jointly(const contact_setting *s, const contact_particle *p, co
         const vector3 u = tangential(subtract(*v, c[i].velocity), c[i].n);
         vector3 friction = shortened(u, c[i].friction * c[i].multiplier);
         for (unsigned k = 0; k < count; k++) {
-            const vector3 line = outer(c[i].n, c[k].n);
+            const vector3 line = cross(c[i].n, c[k].n);
             const double square = inner(line, line);
             if (k != i && c[k].multiplier > 0 && square > 0)
                 friction = scale(inner(friction, line) / square, line);
@@ -1291,11 +1292,10 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b)
 {
     near_point at[3];
-    double nearest = (double)INFINITY;
-    const unsigned found = find_all(p, b, &b->start, p->x0, at);
-    for (unsigned i = 0; i < found; i++)
-        nearest = fmin(nearest, at[i].gap);
-    return nearest <= slop_of(s, p, b);
+    unsigned i = find_all(p, b, &b->start, p->x0, at);
+    while (i > 0 && !(at[i - 1].gap <= slop_of(s, p, b)))
+        i--;
+    return i > 0;
 }
 
 unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p, bool at_end,

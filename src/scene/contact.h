@@ -53,7 +53,8 @@ typedef struct contact_body {
     spring_gap_fn *gap;
     void *user;
     body_pose start, end;
-    /* Bounds on where a particle of radius r is at the start of the step if it can touch the body. */
+    /* Bounds on the position, at the start of the step, of a particle of radius r that can touch the body. The core is
+       the point, segment or box of the shape, without its radius. */
     double reach, growth; /* [m] distance from the core <= reach + growth (r + |d - shift|), d: its displacement */
     /* [m] Box, to be extended by growth (r + |d|). +-INFINITY: not bounded. */
     double low[3], high[3];

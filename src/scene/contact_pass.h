@@ -20,7 +20,7 @@ typedef struct scene_contacts {
     const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
     uint32_t *touched;      /* written: the same for this step; may be `before` */
     scalar *clearance;      /* [m] by chunk and collider: see contact_near_tmpl.h */
-    bool begins;            /* in the first step of a call, it is not known */
+    bool begins;            /* the first step of a call: the clearance is not known yet */
 } scene_contacts;
 
 /* A particle in a motion with contacts. Its free motion has the operations of leapfrog_particles_tmpl.h. */
@@ -94,7 +94,7 @@ static inline bool too_fast_vector(const scene_motion *m, vector3 v)
     return !(fabs(v.x) <= limit && fabs(v.y) <= limit && fabs(v.z) <= limit);
 }
 
-/* Whether the free motion of this particle has a result that is not finite, or too fast. */
+/* Whether the stored result of this particle is not finite, or too fast. */
 static inline bool wrong_state(const scene_particles *p, const scene_motion *m, size_t i)
 {
     const vector3 x = load_vector(m->x + i, p->stride, p->axes), v = load_vector(m->v + i, p->stride, p->axes);
@@ -117,7 +117,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     if (m->contacts == KICK_DRIFT_CONTACTS) {
         if (m->ends_previous) {
             v0 = kicked_implicitly_by(q, m->kick, q->v0);
-            round_vector(q->v0, v0); /* as after a call */
+            round_vector(q->v0, v0); /* to the stored precision, as at the end of a call */
             v0 = vector_from(q->v0);
             fine = !too_fast_vector(m, v0);
         }
@@ -257,7 +257,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
 {
     resting_chunk r;
     scalar change[3][contact_chunk];
-    const bool fine = kernel(p, m, from, from + count); /* false: stops may still slow particles down */
+    const bool fine = kernel(p, m, from, from + count); /* false is not final: stops may slow particles down */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
     r.place = x + from;
@@ -286,7 +286,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     return all_fine;
 }
 
-/* A motion of a chunk of particles that starts without a stop. */
+/* Advances a chunk of particles. No kick that stops at colliders comes before it. */
 SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
                                 particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
                                 size_t count)
@@ -327,13 +327,8 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
 
 static inline bool any_set(const uint32_t *bits, size_t count)
 {
-    uint64_t all = 0, two[2];
-    size_t k = 0;
-    for (; k + 4 <= count; k += 4) {
-        memcpy(two, bits + k, sizeof two);
-        all |= two[0] | two[1];
-    }
-    for (; k < count; k++)
+    uint32_t all = 0;
+    for (size_t k = 0; k < count; k++)
         all |= bits[k];
     return all != 0;
 }

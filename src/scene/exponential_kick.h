@@ -154,16 +154,40 @@ SPRING_NOINLINE bool is_pressed(const scene_step *s, size_t i, const scalar *res
     return pressed;
 }
 
+/* In the first step after colliders were set, no step has recorded which particles touch them: finds them in a chunk.
+   The motion of the chunk ends where it starts. */
+SPRING_NOINLINE void find_touching(const scene_step *s, resting_chunk *r)
+{
+    const scene_contacts *const t = &s->contacts;
+    uint32_t *const touched = t->touched + r->first;
+    s->kernels->common->keep_motion(&s->particles, r->step, r->first, r->count, r->kept);
+    memset(touched, 0, r->count * sizeof *touched);
+    if (!s->kernels->common->find_near(r))
+        return;
+    apply_masks(s->scene, r);
+    for (uint32_t l = 0; l < r->listed; l++) {
+        const size_t k = r->list[l], i = r->first + k;
+        contact_particle particle;
+        scene_contact_particle(s->scene, i, &particle);
+        particle.x0 = load_vector(s->whole.x0 + i, s->particles.stride, s->particles.axes);
+        for (unsigned c = 0; c < t->setting.count; c++)
+            if ((r->candidate[k] >> c & 1) != 0 && spring_contact_touches(&t->setting, &particle, &t->setting.body[c]))
+                touched[k] |= UINT32_C(1) << c;
+    }
+}
+
 /* Finds the pressed particles of a chunk, and takes their loads out of the residual, v of this motion. */
 SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *m, size_t from, pressed_list *found)
 {
     resting_chunk r;
+    kept_motion kept;
     scalar normal[3][contact_chunk];
-    const uint32_t *const before = s->contacts.before + from;
     const size_t left = s->particles.count - from, stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
-    begin_rest(s->scene, &s->contacts, &s->particles, m, NULL, from, left < contact_chunk ? left : contact_chunk, &r);
-    if (list_touching(s->scene, &r, before) == 0)
+    begin_rest(s->scene, &s->contacts, &s->particles, m, &kept, from, left < contact_chunk ? left : contact_chunk, &r);
+    if (elapsed_at(s, 0) == 0)
+        find_touching(s, &r);
+    if (list_touching(s->scene, &r, s->contacts.before + from) == 0)
         return;
     r.change = normal[0];
     r.place = m->x0 + from;
@@ -193,48 +217,15 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
     }
 }
 
-/* Finds which colliders the particles of a chunk touch at the start of the step. */
-SPRING_NOINLINE void find_touching_from(const scene_step *s, size_t from)
-{
-    const scene_contacts *const t = &s->contacts;
-    scene_motion still = s->whole;
-    kept_motion kept;
-    resting_chunk r;
-    const size_t left = s->particles.count - from, count = left < contact_chunk ? left : contact_chunk;
-    still.x = (scalar *)still.x0; /* which is not written to */
-    still.force = s->forces.force;
-    s->kernels->common->keep_motion(&s->particles, &still, from, count, &kept);
-    begin_rest(s->scene, t, &s->particles, &still, &kept, from, count, &r);
-    memset(t->touched + from, 0, count * sizeof *t->touched);
-    if (!s->kernels->common->find_near(&r))
-        return;
-    apply_masks(s->scene, &r);
-    for (uint32_t l = 0; l < r.listed; l++) {
-        const size_t k = r.list[l], i = from + k;
-        contact_particle particle;
-        scene_contact_particle(s->scene, i, &particle);
-        particle.x0 = load_vector(s->whole.x0 + i, s->particles.stride, s->particles.axes);
-        for (unsigned c = 0; c < t->setting.count; c++)
-            if ((r.candidate[k] >> c & 1) != 0 && spring_contact_touches(&t->setting, &particle, &t->setting.body[c]))
-                t->touched[i] |= UINT32_C(1) << c;
-    }
-}
-
-/* In the first step after colliders were set, no step has recorded which particles touch them. */
-static inline void find_touching(scene_step *s)
-{
-    if (s->contacts.setting.count == 0 || elapsed_at(s, 0) != 0)
-        return;
-    for (size_t i = 0; i < s->particles.count; i += contact_chunk)
-        find_touching_from(s, i);
-    s->contacts.before = s->contacts.touched;
-}
-
-static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
+static inline pressed_list find_pressed(scene_step *s, scalar *residual)
 {
     pressed_list found = {.list = scene_memory(s->scene, ARRAY_PRESSED)};
     scene_motion start = s->whole;
     start.v = residual;
+    start.x = (scalar *)start.x0; /* which is not written to */
+    start.force = s->forces.force;
+    if (elapsed_at(s, 0) == 0)
+        s->contacts.before = s->contacts.touched;
     for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i += contact_chunk)
         find_pressed_from(s, &start, i, &found);
     return found;
@@ -423,7 +414,6 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     residual.force = end.force = s->forces.force;
     scalar *const v1 = collides ? kick_storage(s, 1) : s->whole.v;
     pressed_list pressed;
-    find_touching(s);
     if (predicts) {
         const size_t bytes = s->scene->layout.axes * s->scene->layout.stride * sizeof(scalar);
         scalar *const of_links = force_at(s, 1 - s->to), *const predicted = kick_storage(s, 1);

@@ -93,7 +93,7 @@ typedef struct scene_layout {
     size_t masses;   /* elements of a quantity that depends on the mass */
     uint32_t bands;
     uint32_t three_point_bands;                      /* the last ones of these */
-    size_t reach;                                    /* largest distance of the particles of a banded link */
+    size_t reach;                                    /* largest difference of the indices of a banded link */
     band_layout band[most_bands];                    /* by kind, tethers among other links, and ascending offset */
     size_t band_slots, band_coefficients, band_ring; /* of all bands */
     size_t unbanded;                                 /* links in no band, without weighted links */
@@ -102,7 +102,8 @@ typedef struct scene_layout {
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
 
-/* The size of a quantity of the particles whose contacts are found together. The stack limits it. */
+/* The bytes of one coordinate of the particles whose contacts are found together: 32 doubles or 64 floats. The stack
+   limits it. */
 enum { contact_chunk_bytes = 256 };
 
 /* Elements of ARRAY_CLEARANCE from one chunk to the next: whole vectors. */

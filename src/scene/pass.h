@@ -94,7 +94,7 @@ static inline double time_at(const scene_step *s, double fraction)
     return s->t0 + (s->done + fraction) * s->dt;
 }
 
-/* [s] The same since the colliders were set. */
+/* [s] The time since the colliders were set. */
 static inline double elapsed_at(const scene_step *s, double fraction)
 {
     return s->colliders_base + (s->done - s->colliders_from + fraction) * s->dt;
