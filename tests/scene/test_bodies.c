@@ -249,6 +249,34 @@ static void platforms(void)
         }
 }
 
+/* A lift that starts at 1 m/s, whose velocity the program does not know. The collider follows it as at
+   spring_scene_set_colliders(), and a particle stays on it. */
+static void lift(void)
+{
+    const double none[3] = {0}, g[3] = {0, -gravity, 0};
+    spring_scene *s = particle_at(none, none, g, 1);
+    spring_collider c = unit_box;
+    uint32_t count = 1, touched = 0;
+    double now[3], u[3];
+    c.half[0] = 100, c.at[1] = -0.1;
+    set(s, &c, 1);
+    for (int f = 0; f < 60; f++) {
+        const double next = -0.1 + (f < 10 ? 0 : (f - 9) * frame);
+        spring_scene_get_colliders(s, &c, &count);
+        c.acceleration[1] = 16.0 / 9 * (next - c.at[1] - c.velocity[1] * frame) / frame / frame;
+        set(s, &c, 1);
+        run(s, SPRING_LEAPFROG, frame / 16, 16);
+    }
+    spring_scene_get_colliders(s, &c, &count);
+    get(s, now, u);
+    spring_scene_touching(s, &touched, 0, 1);
+    CHECK_CLOSE(c.at[1], -0.1 + 50 * frame, 1e-9, "the collider is where the lift is");
+    CHECK_CLOSE(c.velocity[1], 1, 1e-9, "and as fast");
+    CHECK_CLOSE(u[1], 1, in_double ? 1e-9 : 1e-5, "and so is the particle");
+    CHECK(touched == 1, "which stands on it");
+    free(s);
+}
+
 /* --------------------------------------------------------------------------------------------------------- friction */
 
 static const double block_mu = 0.1, block_omega = 2 * PI;
@@ -1138,6 +1166,7 @@ static const test tests[] = {
     {"turntable", turntable},
     {"rocking box", rocking_box},
     {"platforms", platforms},
+    {"a lift that starts", lift},
     {"friction across reversals", friction_across_reversals},
     {"grooves", grooves},
     {"wide grooves", wide_grooves},
