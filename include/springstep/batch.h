@@ -150,8 +150,9 @@ SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double
 
 /** The single-precision version. The rule by which springs are placed on their targets has the ulp of float, FLT_MIN
    instead of DBL_MIN, and 2^-11 instead of 2^-16. A spring is therefore placed from at most 2304 ulps away, less than
-   0.03 % of the larger of |x| and |rest position|. It may stop before this if slow dt < 2^-11: half-lives above 23 s at 60 Hz, 5.9 s at 240 Hz and 0.029 s at
-   48 kHz. Rest positions are computed in float and tolerances are rounded to float; dt is not rounded. */
+   0.03 % of the larger of |x| and |rest position|. It may stop before this if slow dt < 2^-11: half-lives above 23 s at
+   60 Hz, 5.9 s at 240 Hz and 0.029 s at 48 kHz. Rest positions are computed in float and tolerances are rounded to
+   float; dt is not rounded. */
 SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
                                               double v_tol, size_t *moving);
 

@@ -413,7 +413,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *     RKN8              min(3.14/sqrt(L), 40/D)
  *     SRKN6             min(9.07/sqrt(L), 20/D)
  *     Euler             min(drag/K, 2/D) with drag, else 0
- *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = G - drag/(largest mass), G: D without drag
+ *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = G - drag/(largest mass);  G is D without drag
  *
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:

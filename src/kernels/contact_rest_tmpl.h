@@ -499,7 +499,7 @@ typedef struct picked_particles {
     bool consecutive;
 } picked_particles;
 
-/* One of at most two lanes is half of them. */
+/* With at most two lanes, a vector with any of these particles is computed as it is: one lane is half of it. */
 enum { always_consecutive = lanes <= 2 };
 
 SPRING_CONTACT_INLINE bool are_consecutive(const picked_particles *l)
@@ -750,7 +750,7 @@ static lane_bits pressing_on_collider(resting_chunk *r, const picked_particles *
 /* Computes the contact of some particles with collider c, their only candidate. Returns bits of rest_result. */
 typedef lane_bits rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
 
-/* Listed places in a chunk, which are not consecutive. */
+/* Computes the particles at the places of a list, which are not consecutive. */
 SPRING_NOINLINE void step_listed(resting_chunk *r, unsigned c, const uint8_t *list, size_t listed, rest_step *step)
 {
     for (size_t k = 0; k < listed; k += lanes) {
@@ -780,15 +780,15 @@ SPRING_NOINLINE uint32_t for_each_candidate(resting_chunk *r, rest_step *step)
         size_t listed = 0;
         l.consecutive = true;
         for (size_t i = 0; i < r->count; i += lanes) {
-            uint32_t is[lanes];
+            uint32_t ours[lanes]; /* 1 where it is */
             size_t many = 0;
             l.where = are_bits(load_bits(r->candidate + i), UINT32_C(1) << c);
             if (!any(l.where))
                 continue;
-            store_bits(is, bits_where(l.where, 1));
+            store_bits(ours, bits_where(l.where, 1));
             for (size_t j = 0; j < lanes; j++) {
                 list[listed + many] = (uint8_t)(i + j);
-                many += is[j];
+                many += ours[j];
             }
             found |= UINT32_C(1) << c;
             l.place[0] = i;

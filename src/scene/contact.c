@@ -15,9 +15,9 @@
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
  *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
  *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
- *           3. Impact, if n.u < 0, with u = v0 + theta h a - V, at a second contact w - V: the impulse is
- *              -(1 + e) n.u n times the mass, with friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has
- *              the changed velocity.
+ *           3. Impact, if n.u < 0, with u = v0 + theta h a - V, or u = w - V at a second contact: the impulse is
+ *              -(1 + e) n.u n times the mass, with friction along -u_t of at most mu times its size. The rest of the
+ *              path, (1 - theta) h, has the changed velocity.
  *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
  *              is lambda n, with the lambda for which the path ends on the surface. Late, in the second half of the
  *              step, at a second contact in the step, or after item 1: the path is projected to the tangent plane, and w
@@ -1292,10 +1292,11 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b)
 {
     near_point at[3];
-    unsigned i = find_all(p, b, &b->start, p->x0, at);
-    while (i > 0 && !(at[i - 1].gap <= slop_of(s, p, b)))
-        i--;
-    return i > 0;
+    const unsigned found = find_all(p, b, &b->start, p->x0, at);
+    for (unsigned i = 0; i < found; i++)
+        if (at[i].gap <= slop_of(s, p, b))
+            return true;
+    return false;
 }
 
 unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p, bool at_end,

@@ -286,7 +286,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     return all_fine;
 }
 
-/* Advances a chunk of particles. No kick that stops at colliders comes before it. */
+/* Advances a chunk of particles. The kick that ends the previous step is complete, or stops at no collider. */
 SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
                                 particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
                                 size_t count)

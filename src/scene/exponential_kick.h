@@ -154,8 +154,13 @@ SPRING_NOINLINE bool is_pressed(const scene_step *s, size_t i, const scalar *res
     return pressed;
 }
 
-/* In the first step after colliders were set, no step has recorded which particles touch them: finds them in a chunk.
-   The motion of the chunk ends where it starts. */
+/* Whether this is the first step after colliders were set: no step has recorded which particles touch them. */
+static inline bool touching_is_unknown(const scene_step *s)
+{
+    return s->contacts.setting.count > 0 && elapsed_at(s, 0) == 0;
+}
+
+/* Finds the particles of a chunk that touch colliders. Its motion ends where it starts. */
 SPRING_NOINLINE void find_touching(const scene_step *s, resting_chunk *r)
 {
     const scene_contacts *const t = &s->contacts;
@@ -185,7 +190,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
     const size_t left = s->particles.count - from, stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
     begin_rest(s->scene, &s->contacts, &s->particles, m, &kept, from, left < contact_chunk ? left : contact_chunk, &r);
-    if (elapsed_at(s, 0) == 0)
+    if (touching_is_unknown(s))
         find_touching(s, &r);
     if (list_touching(s->scene, &r, s->contacts.before + from) == 0)
         return;
@@ -224,7 +229,7 @@ static inline pressed_list find_pressed(scene_step *s, scalar *residual)
     start.v = residual;
     start.x = (scalar *)start.x0; /* which is not written to */
     start.force = s->forces.force;
-    if (elapsed_at(s, 0) == 0)
+    if (touching_is_unknown(s))
         s->contacts.before = s->contacts.touched;
     for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i += contact_chunk)
         find_pressed_from(s, &start, i, &found);
