@@ -16,7 +16,7 @@
 static const double frames = 60; /* [1/s] */
 enum { PARTS_PER_S = 10, FRAMES_PER_PART = 6, COMPARED = 3, MOST_STEPS = 64 };
 static const int compared[COMPARED] = {5, 10, 20};           /* parts after which errors are measured */
-static const double softened = 0.95, longest_adaptive = 0.2; /* of the stable step; [s] for a part of a run */
+static const double softened = 0.95, longest_adaptive = 0.5; /* of the stable step; [s] for a part of a run */
 static const double exploded = 100;                          /* times the energy that gravity released */
 
 typedef struct observed { /* sums over the second half of a run */
