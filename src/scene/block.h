@@ -27,7 +27,7 @@ typedef struct pressed_particle {
     freedom freedom;
     scalar line[3];     /* unit vector: the normal, or the line along which the particle is free */
     scalar outwards[3]; /* sum of the normals */
-    scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
+    scalar friction[3]; /* [m/s^2] in the kick */
     unsigned collider;  /* the first one that it presses on */
     scalar removed[3];  /* [m/s] change of velocity by colliders in the kick; [m/s^2] before its last term */
 } pressed_particle;

@@ -181,6 +181,13 @@ SPRING_NOINLINE void find_touching(const scene_step *s, resting_chunk *r)
     }
 }
 
+/* The factor of a force in the kick: 1/mass, and less with drag. */
+static inline double kick_weight(const scene_step *s, size_t i)
+{
+    const double inverse_mass = inverse_mass_at(s->scene, i), q = (double)(s->h * s->particles.drag) * inverse_mass;
+    return inverse_mass / (1 + q * (0.5 + q / (12 + 2 * q)));
+}
+
 /* Finds the pressed particles of a chunk, and takes their loads out of the residual, v of this motion. */
 SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *m, size_t from, pressed_list *found)
 {
@@ -215,14 +222,72 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
             free[a] = m->v[a * stride + i];
         free_component(p, axes, free);
         for (uint32_t a = 0; a < axes; a++) {
-            p->load[a] = p->removed[a] = m->v[a * stride + i] - free[a];
+            p->removed[a] = m->v[a * stride + i] - free[a];
             m->v[a * stride + i] = free[a];
         }
         found->count++;
     }
 }
 
-static inline pressed_list find_pressed(scene_step *s, scalar *residual)
+/* [m/s^2] The friction that stops a particle, or as much of it as its collider can give. load: its residual without
+   damping */
+static inline void stopping_friction(const scene_step *s, pressed_particle *p, const scalar *load)
+{
+    const size_t stride = s->scene->layout.stride;
+    const uint32_t axes = s->particles.axes;
+    contact_surface surface[most_surfaces];
+    if (surfaces_at(s, UINT32_C(1) << p->collider, p->particle, false, s->whole.x0, surface) != 1)
+        return;
+    const double n[3] = {surface->normal.x, surface->normal.y, surface->normal.z};
+    const double of_surface[3] = {surface->velocity.x, surface->velocity.y, surface->velocity.z};
+    double stopping[3], along = 0, pressed = 0, square = 0;
+    for (uint32_t a = 0; a < axes; a++) {
+        const double sliding = (double)s->whole.v0[a * stride + p->particle] - of_surface[a];
+        stopping[a] = -(sliding / (double)s->h + (double)load[a]);
+        along += stopping[a] * n[a];
+        pressed -= (double)load[a] * n[a];
+    }
+    for (uint32_t a = 0; a < axes; a++) {
+        stopping[a] -= along * n[a];
+        square += stopping[a] * stopping[a];
+    }
+    const double limit = surface->friction * fmax(pressed, 0);
+    const double fraction = square > limit * limit ? limit / spring_sqrt(square) : 1;
+    for (uint32_t a = 0; a < axes; a++)
+        p->friction[a] = (scalar)(fraction * stopping[a]);
+}
+
+/* Lets friction act in the kick on pressed particles that it does not hold, so that damping spreads it over the body.
+   If it acted only after the kick, on the particles that touch, a body could creep down a slope, or stop before its
+   forces are in balance. x: positions of the kick */
+static inline void add_friction(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *residual)
+{
+    const size_t stride = s->scene->layout.stride;
+    scene_links links = *s->links;
+    bool known = false; /* the damping forces */
+    links.terms = DAMPING_TERM;
+    for (size_t j = 0; j < pressed->count; j++) {
+        pressed_particle *const p = &pressed->list[j];
+        const scalar weight = (scalar)kick_weight(s, p->particle);
+        scalar load[3];
+        if (p->freedom != FREE_IN_PLANE || s->contacts.setting.body[p->collider].friction == 0)
+            continue;
+        if (!known)
+            evaluate_links(s->kernels, &links, x, s->whole.v0, &s->forces);
+        known = true;
+        for (uint32_t a = 0; a < s->particles.axes; a++) {
+            const size_t at = a * stride + p->particle;
+            load[a] = residual[at] + p->removed[a] - weight * s->forces.force[at];
+        }
+        stopping_friction(s, p, load);
+        for (uint32_t a = 0; a < s->particles.axes; a++) {
+            residual[a * stride + p->particle] += p->friction[a];
+            p->removed[a] -= p->friction[a];
+        }
+    }
+}
+
+static inline pressed_list find_pressed(scene_step *s, const scalar *x, scalar *residual)
 {
     pressed_list found = {.list = scene_memory(s->scene, ARRAY_PRESSED)};
     scene_motion start = s->whole;
@@ -233,6 +298,7 @@ static inline pressed_list find_pressed(scene_step *s, scalar *residual)
         s->contacts.before = s->contacts.touched;
     for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i += contact_chunk)
         find_pressed_from(s, &start, i, &found);
+    add_friction(s, &found, x, residual);
     return found;
 }
 
@@ -266,37 +332,23 @@ static inline void record_change(const scene_step *s, size_t i, unsigned k, cons
     spring_contact_record(&s->contacts.setting, &particle, k, &at, &removed, &at, &zero);
 }
 
-/* Adds its load to the velocity of each pressed particle. The contacts that are computed next remove it again, with
-   friction. A load is that of the residual, with damping at the velocities v1 at the end of the kick: at
-   v0, damping forces may be many times larger than their mean. x: positions of the kick. */
-static inline void load_pressed(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
+/* Adds its mean load in the kick to the velocity v1 of each pressed particle, without the friction in the kick. The
+   contacts that are computed next remove it again, with friction. x: positions of the kick */
+static inline void load_pressed(const scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
 {
     const scene_particles *const p = &s->particles;
-    const uint32_t axes = p->axes;
-    scalar *const change = kick_storage(s, 2);
-    for (uint32_t a = 0; a < axes; a++)
-        for (size_t i = a * p->stride; i < a * p->stride + p->count; i++)
-            change[i] = v1[i] - s->whole.v0[i];
-    scene_links links = *s->links;
-    links.terms = DAMPING_TERM;
-    evaluate_links(s->kernels, &links, x, change, &s->forces);
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const one = &pressed->list[j];
-        const double inverse_mass = inverse_mass_at(s->scene, one->particle),
-                     q = (double)(s->h * p->drag) * inverse_mass;
-        const scalar weight = (scalar)(inverse_mass / (1 + q * (0.5 + q / (12 + 2 * q))));
-        scalar accel[3], free[3];
-        for (uint32_t a = 0; a < axes; a++)
-            free[a] = accel[a] = weight * s->forces.force[a * p->stride + one->particle];
-        free_component(one, axes, free);
         scalar along = 0, square = 0;
-        for (uint32_t a = 0; a < axes; a++) {
-            along += one->outwards[a] * (one->load[a] + (accel[a] - free[a]));
+        for (uint32_t a = 0; a < p->axes; a++) {
+            along += one->outwards[a] * one->removed[a];
             square += one->outwards[a] * one->outwards[a];
         }
-        for (uint32_t a = 0; a < axes && along < 0; a++) {
+        for (uint32_t a = 0; a < p->axes; a++) {
             scalar *const v = &v1[a * p->stride + one->particle], before = *v;
-            *v += s->h * (along / square) * one->outwards[a];
+            *v -= s->h * one->friction[a];
+            if (along < 0)
+                *v += along / square * one->outwards[a];
             one->removed[a] += before - *v;
         }
         record_change(s, one->particle, one->collider, x, vector_from(one->removed));
@@ -429,7 +481,7 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
         call_back(s->scene, drift.x, s->whole.v0, time_at(s, 0.5), s->forces.force);
         if (!move(s, kernels->residual, &residual))
             return failed;
-        pressed = find_pressed(s, residual.v);
+        pressed = find_pressed(s, drift.x, residual.v);
         if (!kick_exponentially(s, &pressed, drift.x, s->h / 2, predicted, NULL, SCALAR_MAX))
             return failed;
         memcpy(s->forces.force, of_links, bytes);
@@ -439,7 +491,7 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     } else if (!move_evaluate_move(s, kernels->drift, &drift, s->whole.v0, 0.5, kernels->residual, &residual)) {
         return failed;
     }
-    pressed = find_pressed(s, residual.v);
+    pressed = find_pressed(s, drift.x, residual.v);
     if (!collides)
         return (scene_outcome){.finite =
                                    kick_exponentially(s, &pressed, drift.x, s->h, v1, s->whole.x, s->whole.max_speed)};
