@@ -744,6 +744,7 @@ static lane_bits pressing_on_collider(resting_chunk *r, const picked_particles *
     const lane_mask holds =
         presses & (dot3(sliding, sliding) <= rounding * rounding) & (dot3(free, free) <= limit * limit);
     put3(l, &presses, &normal, r->change, contact_chunk, 3);
+    put3(l, &presses, &sliding, r->change + 3 * contact_chunk, contact_chunk, 3);
     return bits_where(l->where, RESTS_DONE) | bits_where(presses, RESTS_PRESSED) | bits_where(holds, RESTS_HELD);
 }
 

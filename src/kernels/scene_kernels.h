@@ -253,7 +253,7 @@ typedef struct resting_chunk {
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that the particle may touch */
     uint32_t done[contact_chunk];      /* bits of rest_result */
-    scalar *change;                    /* [3][contact_chunk], written: [m/s] by the contact; normals of find_pressing */
+    scalar *change; /* [3][contact_chunk], written: [m/s] by the contact; [6][contact_chunk] for find_pressing */
 } resting_chunk;
 
 /* Sets `candidate`, `list`, `nearby` and `way` for the motion from kept.x0 to x, for free particles. Returns whether
@@ -264,7 +264,7 @@ typedef bool near_kernel(resting_chunk *);
    completes a kick: it writes v and change. move_resting completes motions of particles that rest or slide: it writes x,
    v, predicted and change. For WHOLE_STEP_CONTACTS it also replaces kept.x0 by x of the motion without contacts.
    find_pressing finds particles that press on their collider at the start of a step, where v of the step is their
-   residual. It adds no impulses, and writes their normals to change. */
+   residual. It adds no impulses, and writes their normals and then their velocities along the surface to change. */
 typedef void rest_kernel(resting_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */

@@ -27,7 +27,7 @@ typedef struct pressed_particle {
     freedom freedom;
     scalar line[3];     /* unit vector: the normal, or the line along which the particle is free */
     scalar outwards[3]; /* sum of the normals */
-    scalar friction[3]; /* [m/s^2] in the kick */
+    scalar friction[3]; /* [m/s^2] in the kick; before it is found, [m/s] velocity along the surface */
     unsigned collider;  /* the first one that it presses on */
     scalar removed[3];  /* [m/s] change of velocity by colliders in the kick; [m/s^2] before its last term */
 } pressed_particle;

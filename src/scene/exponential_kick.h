@@ -86,11 +86,12 @@ static inline void add_normal(pressed_particle *p, uint32_t axes, const scalar n
 }
 
 /* How a collider that particle i touched in the last step acts on it. It presses if the particle does not leave the
-   surface, and its residual points into the collider. Static friction holds a pressed particle that does not slide. */
+   surface, and its residual points into the collider. Static friction holds a pressed particle that does not slide.
+   sliding: [m/s] its velocity along the surface */
 typedef enum pressing { NOT_PRESSED, PRESSED, PRESSED_AND_HELD } pressing;
 
 static inline pressing pressing_of(const scene_step *s, const contact_surface *surface, size_t i,
-                                   const scalar *residual, scalar normal[3])
+                                   const scalar *residual, scalar normal[3], scalar sliding[3])
 {
     const size_t stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
@@ -107,14 +108,15 @@ static inline pressing pressing_of(const scene_step *s, const contact_surface *s
     const double rounding = 64 * (double)SCALAR_EPSILON * speed, limit = surface->friction * pressed;
     if (!(pressed > 0) || leaving > rounding)
         return NOT_PRESSED;
-    double sliding = 0, friction = 0; /* squares */
+    double speed_along = 0, pulling = 0; /* squares */
     for (uint32_t a = 0; a < axes; a++) {
         const double along = (double)s->whole.v0[a * stride + i] - of_surface[a] - leaving * n[a];
         const double force = (double)residual[a * stride + i] + pressed * n[a];
-        sliding += along * along;
-        friction += force * force;
+        speed_along += along * along;
+        pulling += force * force;
+        sliding[a] = (scalar)along;
     }
-    return sliding <= rounding * rounding && friction <= limit * limit ? PRESSED_AND_HELD : PRESSED;
+    return speed_along <= rounding * rounding && pulling <= limit * limit ? PRESSED_AND_HELD : PRESSED;
 }
 
 /* The surfaces of the colliders with these bits that particle i touches at x. Returns their number. */
@@ -137,14 +139,16 @@ SPRING_NOINLINE bool is_pressed(const scene_step *s, size_t i, const scalar *res
     contact_surface surface[most_surfaces];
     const unsigned surfaces = surfaces_at(s, s->contacts.before[i], i, false, s->whole.x0, surface);
     for (unsigned k = 0; k < surfaces; k++) {
-        scalar normal[3] = {0};
-        const pressing how = pressing_of(s, &surface[k], i, residual, normal);
+        scalar normal[3] = {0}, sliding[3] = {0};
+        const pressing how = pressing_of(s, &surface[k], i, residual, normal, sliding);
         if (how == NOT_PRESSED)
             continue;
         if (pressed)
             add_normal(p, axes, normal);
         else
-            *p = (pressed_particle){.line = {normal[0], normal[1], normal[2]}, .collider = surface[k].index};
+            *p = (pressed_particle){.line = {normal[0], normal[1], normal[2]},
+                                    .friction = {sliding[0], sliding[1], sliding[2]},
+                                    .collider = surface[k].index};
         for (uint32_t a = 0; a < axes; a++)
             p->outwards[a] += normal[a];
         if (how == PRESSED_AND_HELD)
@@ -193,7 +197,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
 {
     resting_chunk r;
     kept_motion kept;
-    scalar normal[3][contact_chunk];
+    scalar vector[6][contact_chunk]; /* normals, and velocities along the surface */
     const size_t left = s->particles.count - from, stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
     begin_rest(s->scene, &s->contacts, &s->particles, m, &kept, from, left < contact_chunk ? left : contact_chunk, &r);
@@ -201,7 +205,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
         find_touching(s, &r);
     if (list_touching(s->scene, &r, s->contacts.before + from) == 0)
         return;
-    r.change = normal[0];
+    r.change = vector[0];
     r.place = m->x0 + from;
     s->kernels->common->find_pressing(&r);
     for (uint32_t l = 0; l < r.listed; l++) {
@@ -209,8 +213,10 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
         pressed_particle *const p = &found->list[found->count];
         if ((r.done[k] & RESTS_PRESSED) != 0) {
             *p = (pressed_particle){.freedom = (r.done[k] & RESTS_HELD) != 0 ? HELD : FREE_IN_PLANE};
-            for (uint32_t a = 0; a < axes; a++)
-                p->line[a] = p->outwards[a] = normal[a][k];
+            for (uint32_t a = 0; a < axes; a++) {
+                p->line[a] = p->outwards[a] = vector[a][k];
+                p->friction[a] = vector[3 + a][k];
+            }
             while (r.candidate[k] != UINT32_C(1) << p->collider)
                 p->collider++;
         } else if (r.done[k] != 0 || !is_pressed(s, i, m->v, p)) {
@@ -229,59 +235,55 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
     }
 }
 
-/* [m/s^2] The friction that stops a particle, or as much of it as its collider can give. load: its residual without
-   damping */
-static inline void stopping_friction(const scene_step *s, pressed_particle *p, const scalar *load)
+/* The friction that would stop a particle in the step, or as much of it as its collider can give. load: [m/s^2] its
+   residual without damping */
+static inline void set_friction(const scene_step *s, pressed_particle *p, double coefficient, const scalar load[3])
 {
-    const size_t stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
-    contact_surface surface[most_surfaces];
-    if (surfaces_at(s, UINT32_C(1) << p->collider, p->particle, false, s->whole.x0, surface) != 1)
-        return;
-    const double n[3] = {surface->normal.x, surface->normal.y, surface->normal.z};
-    const double of_surface[3] = {surface->velocity.x, surface->velocity.y, surface->velocity.z};
-    double stopping[3], along = 0, pressed = 0, square = 0;
-    for (uint32_t a = 0; a < axes; a++) {
-        const double sliding = (double)s->whole.v0[a * stride + p->particle] - of_surface[a];
-        stopping[a] = -(sliding / (double)s->h + (double)load[a]);
-        along += stopping[a] * n[a];
-        pressed -= (double)load[a] * n[a];
-    }
-    for (uint32_t a = 0; a < axes; a++) {
-        stopping[a] -= along * n[a];
-        square += stopping[a] * stopping[a];
-    }
-    const double limit = surface->friction * fmax(pressed, 0);
-    const double fraction = square > limit * limit ? limit / spring_sqrt(square) : 1;
+    scalar pressed = 0;
+    double square = 0;
     for (uint32_t a = 0; a < axes; a++)
-        p->friction[a] = (scalar)(fraction * stopping[a]);
+        pressed -= load[a] * p->line[a];
+    for (uint32_t a = 0; a < axes; a++) {
+        p->friction[a] = -(load[a] + pressed * p->line[a] + p->friction[a] / s->h);
+        square += (double)p->friction[a] * (double)p->friction[a];
+    }
+    const double limit = pressed > 0 ? coefficient * (double)pressed : 0;
+    const scalar fraction = (scalar)(square > limit * limit ? limit / spring_sqrt(square) : 1);
+    for (uint32_t a = 0; a < axes; a++)
+        p->friction[a] *= fraction;
 }
 
 /* Lets friction act in the kick on pressed particles that it does not hold, so that damping spreads it over the body.
    If it acted only after the kick, on the particles that touch, a body could creep down a slope, or stop before its
-   forces are in balance. x: positions of the kick */
-static inline void add_friction(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *residual)
+   forces are in balance. The load that limits it is that without damping: with damping at v0 it may be many times larger
+   than its mean. x: positions of the kick */
+SPRING_NOINLINE void add_friction(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *residual)
 {
+    const scalar *const each = scene_read(s->scene, ARRAY_FRICTION);
     const size_t stride = s->scene->layout.stride;
     scene_links links = *s->links;
     bool known = false; /* the damping forces */
     links.terms = DAMPING_TERM;
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const p = &pressed->list[j];
-        const scalar weight = (scalar)kick_weight(s, p->particle);
-        scalar load[3];
-        if (p->freedom != FREE_IN_PLANE || s->contacts.setting.body[p->collider].friction == 0)
+        const size_t i = p->particle;
+        const double coefficient =
+            s->contacts.setting.body[p->collider].friction * (each != NULL ? (double)each[i] : 1);
+        if (p->freedom != FREE_IN_PLANE || coefficient == 0) {
+            memset(p->friction, 0, sizeof p->friction);
             continue;
+        }
         if (!known)
             evaluate_links(s->kernels, &links, x, s->whole.v0, &s->forces);
         known = true;
+        const scalar weight = (scalar)kick_weight(s, i);
+        scalar load[3];
+        for (uint32_t a = 0; a < s->particles.axes; a++)
+            load[a] = residual[a * stride + i] + p->removed[a] - weight * s->forces.force[a * stride + i];
+        set_friction(s, p, coefficient, load);
         for (uint32_t a = 0; a < s->particles.axes; a++) {
-            const size_t at = a * stride + p->particle;
-            load[a] = residual[at] + p->removed[a] - weight * s->forces.force[at];
-        }
-        stopping_friction(s, p, load);
-        for (uint32_t a = 0; a < s->particles.axes; a++) {
-            residual[a * stride + p->particle] += p->friction[a];
+            residual[a * stride + i] += p->friction[a];
             p->removed[a] -= p->friction[a];
         }
     }
@@ -305,7 +307,7 @@ static inline pressed_list find_pressed(scene_step *s, const scalar *x, scalar *
 /* Removes the components of b - from in which pressed particles are not free. from: NULL: 0, and b is a term of the
    series. What is removed from a term changes the result by the same amount, besides damping forces: without them,
    Clenshaw's recurrence 2 b_{k+1} - b_{k+2} continues a difference of terms, and the result is such a difference. */
-static inline void project_pressed(const scene_step *s, const pressed_list *pressed, const scalar *from, scalar *b)
+SPRING_NOINLINE void project_pressed(const scene_step *s, const pressed_list *pressed, const scalar *from, scalar *b)
 {
     const size_t stride = s->scene->layout.stride;
     for (size_t j = 0; j < pressed->count; j++) {

@@ -202,14 +202,7 @@ static scalar *coefficients_of(spring_scene *s, scene_array array)
 
 SPRING_INLINE void move_by_slot(scalar *first, const uint32_t *slots, uint8_t *state, size_t count, bool load)
 {
-    enum { at_once = 4 };
-    size_t i = 0;
-    for (; i + at_once <= count; i += at_once) {
-        SPRING_UNROLL
-        for (size_t k = i; k < i + at_once; k++)
-            move_numbers(&first[slots[k]], state + k * sizeof(scalar), 1, sizeof(scalar), load);
-    }
-    for (; i < count; i++)
+    for (size_t i = 0; i < count; i++)
         move_numbers(&first[slots[i]], state + i * sizeof(scalar), 1, sizeof(scalar), load);
 }
 
@@ -357,26 +350,21 @@ static bool weighted_valid(arriving *a, const section *row, uint8_t *state, bool
     return fine;
 }
 
-/* Counts damped links, or makes all damping 0 if the state has none. */
+/* Counts damped links of rest length 0, or makes all damping 0 if the state has none. */
 static void settle_damping(spring_scene *s, size_t first, size_t slots, bool damped)
 {
     if (slots == 0)
         return;
     scalar *const damping = coefficients_of(s, ARRAY_BAND_DAMPING) + first;
     const scalar *const rest = coefficients_of(s, ARRAY_BAND_REST) + first;
-    uint64_t count = 0, isotropic = 0;
     if (!damped)
         memset(damping, 0, slots * sizeof *damping);
-    for (size_t i = 0; i < slots && damped; i++) {
-        count += damping[i] > 0;
-        isotropic += (damping[i] > 0) & (rest[i] == 0);
-    }
-    s->damped_links += count;
-    s->isotropic_links += s->layout.axes > 1 ? isotropic : 0;
+    for (size_t i = 0; i < slots && damped && s->layout.axes > 1; i++)
+        s->isotropic_links += (rest[i] == 0) & (damping[i] > 0);
 }
 
 /* What follows from the coefficients of links. */
-static void settle_links(spring_scene *s, bool damped)
+static void settle_links(spring_scene *s, uint64_t damped)
 {
     const scene_layout *const l = &s->layout;
     const size_t slots = l->three_point_bands > 0 ? l->band[l->bands - l->three_point_bands].slots : l->band_slots;
@@ -384,10 +372,11 @@ static void settle_links(spring_scene *s, bool damped)
     const scalar *const damping = scene_read(s, ARRAY_BAND_DAMPING);
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
     tether *const tethers = scene_memory(s, ARRAY_TETHERS);
-    settle_damping(s, 0, slots, damped);
-    settle_damping(s, l->band_slots, l->unbanded, damped);
-    for (size_t i = 0; i < l->tethers && !damped; i++)
+    settle_damping(s, 0, slots, damped > 0);
+    settle_damping(s, l->band_slots, l->unbanded, damped > 0);
+    for (size_t i = 0; i < l->tethers && damped == 0; i++)
         tethers[i].damping = 0;
+    s->damped_links += damped - count_damped(s); /* now the idle ones, because only weighted links have been counted */
     for (size_t i = 0; i < slots; i++)
         occupied[i] = stiffness[i] + damping[i] > 0 ? -1 : 0;
 }
@@ -571,7 +560,7 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
         if (list[i].count > 0)
             list[i].move(s, &list[i], at, true);
     if (scene_is_editable(s))
-        settle_links(s, h.damped > 0);
+        settle_links(s, h.damped);
     s->force_cache = (cached_force)h.kept;
     s->colliders = (uint32_t)h.bodies;
     s->t0 = h.t0;
