@@ -327,12 +327,12 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * is the damping matrix of the links in their directions there, divided by the masses, and p(z) approximates (1 -
  * e^-z)/z by a Chebyshev series. A correction for the rotation of links during the step is included. Leapfrog is
  * therefore stable for dt < 2/sqrt(L) at any link damping, and a link that creeps does so at the rate
- * stiffness/damping. The kick adds no energy. Where damped links turn during the step, the correction may add some
- * energy. The step has order 2 for dt G up to about 3. Beyond, the order falls to 1 (tests/scene/test_damping.c). A
- * step evaluates forces once, and damping alone once for dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond.
- * Positions, velocities and time are then the whole state: no force is kept. Callbacks are called at t + dt/2. A
- * callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series is computed twice. A
- * negative dt always uses explicit damping.
+ * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step, and for dt
+ * G > 10000 with friction on curved colliders. The step has order 2 for dt G up to about 3. Beyond, the order falls to
+ * 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about 1.6
+ * sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
+ * called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series
+ * is computed twice. A negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
@@ -340,9 +340,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
- * of the distance for dt drag/mass = 1, and 2e-6 for dt drag/mass = 4. Forces must be smooth: a contact, or a force
- * that starts suddenly, reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in
- * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
+ * of the distance for dt drag/mass = 1, and 2e-6 for dt drag/mass = 4. Forces must be smooth: a force that starts
+ * suddenly reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in spring_scene_stable_step()) an
+ * oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
  * with three to six significant digits: without drag the energy error of smooth motion stays bounded. For one
@@ -462,8 +462,8 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
  *
  * @param[in]  def       definition of the scene
  * @param[in]  dt        time step > 0 [s]
- * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1: 0.9 for cloth and soft bodies with
- *                       drag, otherwise as at spring_scene_stable_step()
+ * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1: 0.9 for cloth with shear springs
+ *                       and soft bodies, both with drag, otherwise as at spring_scene_stable_step()
  * @param[out] link      [links] the softened links; may be def->link
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: weighted links leave nothing to the links of a particle; otherwise
  *         as spring_scene_check(). Nothing is written after an error
