@@ -257,7 +257,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
 {
     resting_chunk r;
     scalar change[3][contact_chunk];
-    const bool fine = kernel(p, m, from, from + count); /* false is not final: stops may slow particles down */
+    const bool fine = kernel(p, m, from, from + count); /* false is no failure yet: stops may slow particles down */
     begin_rest(s, t, p, m, NULL, from, count, &r);
     r.change = change[0];
     r.place = x + from;
@@ -286,7 +286,8 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     return all_fine;
 }
 
-/* Advances a chunk of particles. The kick that ends the previous step is complete, or stops at no collider. */
+/* Advances a chunk of particles, of which none touched a collider in the previous step unless its last kick is
+   complete. */
 SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
                                 particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
                                 size_t count)

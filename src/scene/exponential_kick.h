@@ -130,8 +130,8 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
                                    load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon, surface);
 }
 
-/* Whether particle i is pressed, and how. It touches several colliders, a custom body, or a surface that moves in its
-   frame. */
+/* Whether particle i is pressed, and how: for a particle that touches several colliders, a custom body, or a surface
+   that moves in its frame. */
 SPRING_NOINLINE bool is_pressed(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
 {
     const uint32_t axes = s->particles.axes;
@@ -256,8 +256,8 @@ static inline void set_friction(const scene_step *s, pressed_particle *p, double
 
 /* Lets friction act in the kick on pressed particles that it does not hold, so that damping spreads it over the body.
    If it acted only after the kick, on the particles that touch, a body could creep down a slope, or stop before its
-   forces are in balance. The load that limits it is that without damping: with damping at v0 it may be many times larger
-   than its mean. x: positions of the kick */
+   forces are in balance. Its limit follows from the load without damping, because with damping at v0 the load may be
+   many times larger than its mean. x: positions of the kick */
 SPRING_NOINLINE void add_friction(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *residual)
 {
     const scalar *const each = scene_read(s->scene, ARRAY_FRICTION);
