@@ -87,7 +87,7 @@ static inline void add_normal(pressed_particle *p, uint32_t axes, const scalar n
 
 /* How a collider that particle i touched in the last step acts on it. It presses if the particle does not leave the
    surface, and its residual points into the collider. Static friction holds a pressed particle that does not slide.
-   sliding: [m/s] its velocity along the surface */
+   sliding, written: [m/s] its velocity along the surface */
 typedef enum pressing { NOT_PRESSED, PRESSED, PRESSED_AND_HELD } pressing;
 
 static inline pressing pressing_of(const scene_step *s, const contact_surface *surface, size_t i,
@@ -334,8 +334,8 @@ static inline void record_change(const scene_step *s, size_t i, unsigned k, cons
     spring_contact_record(&s->contacts.setting, &particle, k, &at, &removed, &at, &zero);
 }
 
-/* Adds its mean load in the kick to the velocity v1 of each pressed particle, without the friction in the kick. The
-   contacts that are computed next remove it again, with friction. x: positions of the kick */
+/* Gives each pressed particle back what its colliders took from its velocity v1 in the kick: the load, and friction. The
+   contacts that are computed next remove the load again, with the friction that belongs to it. x: positions of the kick */
 static inline void load_pressed(const scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
 {
     const scene_particles *const p = &s->particles;

@@ -376,7 +376,8 @@ static void settle_links(spring_scene *s, uint64_t damped)
     settle_damping(s, l->band_slots, l->unbanded, damped > 0);
     for (size_t i = 0; i < l->tethers && damped == 0; i++)
         tethers[i].damping = 0;
-    s->damped_links += damped - count_damped(s); /* now the idle ones, because only weighted links have been counted */
+    /* count_damped() returns the damped tethers that do not act, because no other link has been counted. */
+    s->damped_links += damped - count_damped(s);
     for (size_t i = 0; i < slots; i++)
         occupied[i] = stiffness[i] + damping[i] > 0 ? -1 : 0;
 }
