@@ -22,43 +22,49 @@ mkdir "$tree"
 tar -C "$root" --exclude-vcs --exclude='./build*' -c . | tar -C "$tree" -x
 
 closing='^([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$'
-passed=0 failed=0 skipped=0
+passed=0 failed=0 skipped=0 all_processor=0
 rows=() failed_tests=()
 
-# row NAME SECONDS RESULT
-row() {
-    local tenths=$((($2 + 3) / 6))
-    rows+=("$(printf '%-24s %5d.%d  %s' "$1" $((tenths / 10)) $((tenths % 10)) "$3")")
-}
+# minutes SECONDS: with one decimal
+minutes() { printf '%d.%d' $((($1 + 3) / 60)) $(((($1 + 3) / 6) % 10)); }
+
+# row NAME SECONDS PROCESSOR-SECONDS RESULT
+row() { rows+=("$(printf '%-24s %7s %10s  %s' "$1" "$(minutes "$2")" "$(minutes "$3")" "$4")"); }
+
+# timed FILE COMMAND...: in a subshell of its own. Writes to FILE its seconds, and those of the processor with all children.
+timed() (
+    status=0 begin=$SECONDS
+    "${@:2}" || status=1
+    times >"$1.times"
+    awk -v wall=$((SECONDS - begin)) '{ for (i = 1; i <= 2; i++) { split($i, t, /[ms]/); sum += 60 * t[1] + t[2] } }
+        END { printf "%d %d\n", wall, sum }' "$1.times" >"$1"
+    exit $status
+)
 
 # start NAME COMMAND...: beside the parts that follow, until the part of that name, which is given no command
 start() {
     local name=$1
     shift
     set -m # a process group of its own, for clean_up
-    {
-        local status=0 begin=$SECONDS
-        "$@" >"$work/$name.log" 2>&1 || status=1
-        echo $((SECONDS - begin)) >"$work/$name.seconds"
-        exit $status
-    } &
+    timed "$work/$name.seconds" "$@" >"$work/$name.log" 2>&1 &
     set +m
     jobs[$name]=$!
 }
 
-# run_part NAME [COMMAND...]: shows what it prints, and leaves it in $work/log and the time it took in $seconds
+# run_part NAME [COMMAND...]: shows what it prints, and leaves it in $work/log and its times in $seconds and $processor
 run_part() {
-    local name=$1 status=0 begin=$SECONDS
+    local name=$1 status=0 times=$work/seconds
     shift
     printf '\n=== %s\n' "$name"
     if [ $# -gt 0 ]; then
-        "$@" 2>&1 | tee "$work/log" || status=1
-        seconds=$((SECONDS - begin))
+        timed "$times" "$@" 2>&1 | tee "$work/log" || status=1
     else
+        times=$work/$name.seconds
         wait "${jobs[$name]}" || status=1
         tee "$work/log" <"$work/$name.log"
-        seconds=$(cat "$work/$name.seconds")
     fi
+    read -r seconds processor <"$times"
+    all_processor=$((all_processor + processor))
     return $status
 }
 
@@ -80,7 +86,7 @@ suite() {
         result="FAILED: $result"
         if [ "$counted" -eq 0 ]; then failed=$((failed + 1)); fi
     fi
-    row "$1" "$seconds" "$result"
+    row "$1" "$seconds" "$processor" "$result"
 }
 
 # check NAME COMMAND...: a part that counts as one test
@@ -92,7 +98,7 @@ check() {
         result=FAILED
         failed=$((failed + 1))
     fi
-    row "$1" "$seconds" "$result"
+    row "$1" "$seconds" "$processor" "$result"
 }
 
 install_packages() {
@@ -120,9 +126,9 @@ under_sanitizers() {
 
 # Last: the tests that failed, the table and the sum of the counts; its status is that of the script.
 finish() {
-    row total $SECONDS ''
+    row total $SECONDS $all_processor ''
     if [ ${#failed_tests[@]} -gt 0 ]; then printf '\n%s' "${failed_tests[@]}"; fi
-    printf '\n%-24s minutes  result\n' part
+    printf '\n%-24s minutes  processor  result\n' part
     printf '%s\n' "${rows[@]}"
     echo "$passed passed, $failed failed, $skipped skipped"
     [ "$failed" -eq 0 ]

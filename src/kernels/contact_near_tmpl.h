@@ -90,12 +90,12 @@ SPRING_INLINE real minus_way(real3 from, real3 to)
 }
 
 /* Lanes from i on that are particles of the chunk. */
-SPRING_INLINE lane_mask lanes_of_chunk(const resting_chunk *r, size_t i)
+SPRING_INLINE lane_mask lanes_of_chunk(const candidate_chunk *r, size_t i)
 {
     return first_lanes(r->count - i < lanes ? r->count - i : lanes);
 }
 
-SPRING_INLINE scalar longest_way(const resting_chunk *r)
+SPRING_INLINE scalar longest_way(const candidate_chunk *r)
 {
     const scalar *const x0 = r->kept->x0[0], *const x = r->step->x + r->first;
     const scene_particles *const p = r->particles;
@@ -108,7 +108,7 @@ SPRING_INLINE scalar longest_way(const resting_chunk *r)
 }
 
 /* Bits of the colliders that a chunk may touch on paths of this length. The clearance is reduced by the step. */
-SPRING_NOINLINE uint32_t reached_on_way(const resting_chunk *r, scalar way)
+SPRING_NOINLINE uint32_t reached_on_way(const candidate_chunk *r, scalar way)
 {
     const collider_bounds *const c = r->bounds;
     uint32_t reached = 0;
@@ -124,7 +124,7 @@ SPRING_NOINLINE uint32_t reached_on_way(const resting_chunk *r, scalar way)
 }
 
 /* Finds the clearance from the box of the chunk, and removes colliders from r->nearby. */
-SPRING_NOINLINE void compare_boxes(resting_chunk *r)
+SPRING_NOINLINE void compare_boxes(candidate_chunk *r)
 {
     const collider_bounds *const c = r->bounds;
     const scene_particles *const p = r->particles;
@@ -165,7 +165,7 @@ SPRING_NOINLINE void compare_boxes(resting_chunk *r)
 }
 
 /* Adds collider k to the candidates. Returns the bits of the vectors that have one. */
-SPRING_NOINLINE uint64_t find_candidates(resting_chunk *r, unsigned k)
+SPRING_NOINLINE uint64_t find_candidates(candidate_chunk *r, unsigned k)
 {
     const collider_bound *const c = &r->bounds->each[k];
     const scene_particles *const p = r->particles;
@@ -195,7 +195,7 @@ SPRING_NOINLINE uint64_t find_candidates(resting_chunk *r, unsigned k)
     return 0;
 }
 
-static bool find_near_colliders(resting_chunk *r)
+static bool find_near_colliders(candidate_chunk *r)
 {
     for (size_t k = 0; k < r->bounds->count && r->begins; k += lanes)
         vec_store(r->clearance + k, splat(-SCALAR_MAX));

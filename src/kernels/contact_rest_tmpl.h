@@ -4,7 +4,7 @@
  * the precision of the scene. contact.c has the formulas and the symbols.
  *
  * Method    Particles whose path may touch one collider only are taken together. Where the contact begins at the start of
- *           the step, the last kick of the previous step, the impact (step 3), pressing from the start (step 4) and
+ *           the step, the last kick of the previous step, the impact (item 3), pressing from the start (item 4) and
  *           friction are computed here. All other particles are left to contact.c: contacts that begin within the step,
  *           particles inside a collider, corners, custom bodies, surfaces that move in the frame of their body, and negative
  *           steps. The choice depends on the particle only, so results do not depend on the vector width.
@@ -222,13 +222,13 @@ SPRING_NOINLINE void stop_lanes(const contact_body *b, const body_pose *p, const
     *v = select3(where & (rate < 0), select3(sticks, velocity, slides), *v);
 }
 
-/* Steps 1 and 2: lanes in which the contact begins at the start of the step are touching. */
+/* Items 1 and 2: lanes in which the contact begins at the start of the step are touching. */
 SPRING_CONTACT_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, real3 *way, real3 *normal,
                                       real *gap)
 {
     const contact_body *const b = q->b;
     const scalar epsilon = 8 * SCALAR_EPSILON;
-    q->slop = epsilon * (sum_of_sizes(q->x0) + ((scalar)b->size + q->radius));
+    q->slop = epsilon * (sum_of_sizes(q->x0) + ((scalar)b->rounding_scale + q->radius));
     *start = place_in_lanes(b, &b->start, q->x0);
     *way = way_in_lanes(b, q->x0, q->d);
     nearest_lanes(b, false, start, &q->radius, at);
@@ -334,7 +334,7 @@ SPRING_NOINLINE void find_slide(slide_lanes *s, const real *friction, int most_p
     s->kick = select3(slides, select3(sticks, zero, kick), s->kick);
 }
 
-/* Step 4, early: the lambda for which x + lambda h n lies on the surface at the end. clear: lanes that surely do. After a
+/* Item 4, early: the lambda for which x + lambda h n lies on the surface at the end. clear: lanes that surely do. After a
    step s of Newton's method, the gap to a surface of radius R is less than s^2 sin^2/(2 R), with the angle between the
    normals. */
 SPRING_NOINLINE void find_lambda_lanes(const resting_lanes *q, const real3 *x, const real3 *n, scalar h, int most,
@@ -354,7 +354,7 @@ SPRING_NOINLINE void find_lambda_lanes(const resting_lanes *q, const real3 *x, c
     }
 }
 
-/* Step 3, in some lanes. */
+/* Item 3, in some lanes. */
 SPRING_NOINLINE void hit_lanes(resting_lanes *q, const real3 *u, const real3 *n, const real *rate, lane_mask impact,
                                scalar h)
 {
@@ -421,7 +421,7 @@ SPRING_CONTACT_INLINE real3 ride_of(const contact_body *b, real3 y, real along)
     return plus_scaled3(ride, along, direction_out_lanes(b, &b->end, longer));
 }
 
-/* Steps 3 and 4 from the start of the step, in the lanes that touch. */
+/* Items 3 and 4 from the start of the step, in the lanes that touch. */
 SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 way, real3 n, real gap,
                                        scalar h)
 {
@@ -473,7 +473,7 @@ SPRING_CONTACT_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, r
             find_lambda_lanes(q, &x, &n, h, 3, free, &s.lambda, &s.clear, &s.failed);
         d = plus_scaled3(plus3(q->d, s.shift), s.lambda * h, n);
         change = plus_scaled3(minus3(s.sliding.kick, mean), s.lambda, n);
-        if (any(free & not_mask(s.clear))) { /* otherwise step 5 follows */
+        if (any(free & not_mask(s.clear))) { /* otherwise item 5 follows */
             const real3 x_end = plus3(q->x0, d);
             nearest_at_end(q, &x_end, &there);
             s.failed |= not_mask(s.clear) & not_mask(there.gap >= -q->slop);
@@ -536,7 +536,8 @@ SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from,
 }
 
 /* The radius, and the factor of friction. */
-SPRING_CONTACT_INLINE void pick_surface(const resting_chunk *r, const picked_particles *l, real *radius, real *friction)
+SPRING_CONTACT_INLINE void pick_surface(const candidate_chunk *r, const picked_particles *l, real *radius,
+                                        real *friction)
 {
     *radius = pick(l, r->radius + r->first * r->radius_stride, r->radius_stride);
     *friction = splat(1);
@@ -572,7 +573,7 @@ SPRING_NOINLINE void put3(const picked_particles *l, const lane_mask *where, con
 }
 
 /* Removes lanes whose changed path may touch another collider. */
-SPRING_NOINLINE void leave_to_others(resting_chunk *r, unsigned c, const resting_lanes *q, lane_mask *fine)
+SPRING_NOINLINE void leave_to_others(candidate_chunk *r, unsigned c, const resting_lanes *q, lane_mask *fine)
 {
     const real3 x = plus3(q->x0, q->d);
     const scalar way = -least_of_lanes(select_real(*fine & q->touching, minus_way(q->x0, x), splat(0)));
@@ -587,7 +588,8 @@ SPRING_NOINLINE void leave_to_others(resting_chunk *r, unsigned c, const resting
     }
 }
 
-SPRING_CONTACT_INLINE void pick_resting(const resting_chunk *r, const picked_particles *l, unsigned c, resting_lanes *q)
+SPRING_CONTACT_INLINE void pick_resting(const candidate_chunk *r, const picked_particles *l, unsigned c,
+                                        resting_lanes *q)
 {
     q->b = &r->setting->body[c];
     q->x0 = pick3(l, r->kept->x0[0], contact_chunk, 1, r->particles->axes);
@@ -595,8 +597,8 @@ SPRING_CONTACT_INLINE void pick_resting(const resting_chunk *r, const picked_par
     pick_surface(r, l, &q->radius, &q->friction);
 }
 
-/* Steps 2 to 4. Returns the lanes that have a valid result; others are left to contact.c. */
-SPRING_NOINLINE lane_mask rest_lanes(resting_chunk *r, const picked_particles *l, unsigned c, resting_lanes *q)
+/* Items 2 to 4. Returns the lanes that have a valid result; others are left to contact.c. */
+SPRING_NOINLINE lane_mask rest_lanes(candidate_chunk *r, const picked_particles *l, unsigned c, resting_lanes *q)
 {
     const scalar h = (scalar)r->setting->h;
     lane_mask fine = l->where & are_slow(&q->v0, r->step->max_speed);
@@ -616,7 +618,7 @@ SPRING_NOINLINE lane_mask rest_lanes(resting_chunk *r, const picked_particles *l
 }
 
 /* Writes the results of lanes that touch a collider. */
-SPRING_NOINLINE void put_resting(resting_chunk *r, const picked_particles *l, const lane_mask *done,
+SPRING_NOINLINE void put_resting(candidate_chunk *r, const picked_particles *l, const lane_mask *done,
                                  const resting_lanes *q, const real3 *x, const real3 *v)
 {
     const scene_particles *const p = r->particles;
@@ -634,7 +636,7 @@ SPRING_CONTACT_INLINE real end_of_kick(const scene_motion *m, bool dragged, cons
 }
 
 /* A kick and a drift of particles that may touch collider c only: see rest_step. */
-static lane_bits rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits rest_on_collider(candidate_chunk *r, const picked_particles *l, unsigned c)
 {
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
@@ -681,7 +683,7 @@ static lane_bits rest_on_collider(resting_chunk *r, const picked_particles *l, u
 }
 
 /* The same for a whole step: it counts as a drift with its mean velocity between two kicks. */
-static lane_bits rest_in_whole_step(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits rest_in_whole_step(candidate_chunk *r, const picked_particles *l, unsigned c)
 {
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
@@ -705,7 +707,7 @@ static lane_bits rest_in_whole_step(resting_chunk *r, const picked_particles *l,
     return bits_where(fine, RESTS_DONE) | bits_where(done, RESTS_TOUCHING);
 }
 
-static lane_bits stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits stop_on_collider(candidate_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -725,7 +727,7 @@ static lane_bits stop_on_collider(resting_chunk *r, const picked_particles *l, u
 
 /* Particles that touch collider c at the start of the step press on it if they do not leave it and their residual
    points into it. */
-static lane_bits pressing_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
+static lane_bits pressing_on_collider(candidate_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -749,10 +751,10 @@ static lane_bits pressing_on_collider(resting_chunk *r, const picked_particles *
 }
 
 /* Computes the contact of some particles with collider c, their only candidate. Returns bits of rest_result. */
-typedef lane_bits rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
+typedef lane_bits rest_step(candidate_chunk *r, const picked_particles *l, unsigned c);
 
 /* Computes the particles at the places of a list, which are not consecutive. */
-SPRING_NOINLINE void step_listed(resting_chunk *r, unsigned c, const uint8_t *list, size_t listed, rest_step *step)
+SPRING_NOINLINE void step_listed(candidate_chunk *r, unsigned c, const uint8_t *list, size_t listed, rest_step *step)
 {
     for (size_t k = 0; k < listed; k += lanes) {
         const size_t many = listed - k < lanes ? listed - k : lanes;
@@ -768,7 +770,7 @@ SPRING_NOINLINE void step_listed(resting_chunk *r, unsigned c, const uint8_t *li
 
 /* Vectors of consecutive particles of which at least half have this collider as their only candidate are computed as
    they are. Other particles are collected first. Returns the bits of the colliders that had particles. */
-SPRING_NOINLINE uint32_t for_each_candidate(resting_chunk *r, rest_step *step)
+SPRING_NOINLINE uint32_t for_each_candidate(candidate_chunk *r, rest_step *step)
 {
     const uint32_t nearby = r->nearby;
     uint32_t found = 0;
@@ -810,7 +812,7 @@ enum { impulse_sums = 8, sum_vectors = impulse_sums > lanes ? impulse_sums / lan
 /* Adds the impulses of the changes of velocity of particles at x to collider c. `moves`: the contact also moved them, to x
    of the step. Moments are summed about the first particle of the chunk, which single precision resolves better than a
    distant origin. */
-SPRING_NOINLINE void add_impulses_of(const resting_chunk *r, unsigned c, const scalar *x, size_t stride, bool moves)
+SPRING_NOINLINE void add_impulses_of(const candidate_chunk *r, unsigned c, const scalar *x, size_t stride, bool moves)
 {
     const scene_particles *const p = r->particles;
     const real3 from = {splat(x[0]), splat(x[stride]), splat(p->axes > 2 ? x[2 * stride] : 0)};
@@ -856,7 +858,7 @@ SPRING_NOINLINE void add_impulses_of(const resting_chunk *r, unsigned c, const s
 }
 
 /* colliders: their bits */
-SPRING_CONTACT_INLINE void add_impulses(const resting_chunk *r, uint32_t colliders, const scalar *x, size_t stride,
+SPRING_CONTACT_INLINE void add_impulses(const candidate_chunk *r, uint32_t colliders, const scalar *x, size_t stride,
                                         bool moves)
 {
     for (unsigned c = 0; c < r->setting->count; c++)
@@ -864,17 +866,17 @@ SPRING_CONTACT_INLINE void add_impulses(const resting_chunk *r, uint32_t collide
             add_impulses_of(r, c, x, stride, moves);
 }
 
-static void stop_touching(resting_chunk *r)
+static void stop_touching(candidate_chunk *r)
 {
     add_impulses(r, for_each_candidate(r, stop_on_collider), r->place, r->particles->stride, false);
 }
 
-static void detect_pressing(resting_chunk *r)
+static void detect_pressing(candidate_chunk *r)
 {
     for_each_candidate(r, pressing_on_collider);
 }
 
-static void advance_resting(resting_chunk *r)
+static void advance_resting(candidate_chunk *r)
 {
     rest_step *const step = r->step->contacts == WHOLE_STEP_CONTACTS ? rest_in_whole_step : rest_on_collider;
     add_impulses(r, for_each_candidate(r, step), r->kept->x0[0], contact_chunk, true);

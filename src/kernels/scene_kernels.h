@@ -45,8 +45,8 @@ typedef struct scene_band {
     scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act, or its root is negative */
     scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
     size_t ring_start;       /* of its ring of forces in scene_forces.rings */
-    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots,
-                                with three points twice the offset */
+    ptrdiff_t ring;          /* slots of the ring, a multiple of tile: at least offset + tile (with three
+                                points, 2 offset + tile), or all slots of the band */
     ptrdiff_t back;          /* offset modulo ring */
 } scene_band;
 
@@ -117,7 +117,7 @@ typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, 
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 
 /* Returns whether a link of the bands is longer than `stretch` times its rest length, except for cut links and links of
-   rest length 0. May return true if a link is at most 1e-5 of this length shorter. 0 <= stretch <= 1e9. */
+   rest length 0. May also return true for a link that is shorter than that by at most 1e-5 of it. 0 <= stretch <= 1e9. */
 typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
 
 /* The particles of a scene. */
@@ -133,7 +133,7 @@ typedef struct scene_particles {
     size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
 } scene_particles;
 
-/* Further arguments of the stages of Euler and RK4. */
+/* Further arguments of the stages of Euler and RK4, and of drift_kick_drift, which uses v only. */
 typedef struct scene_stage {
     const scalar *v;       /* [m/s] velocities of the stage that the force belongs to */
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
@@ -234,7 +234,7 @@ typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t f
 typedef enum rest_result { RESTS_DONE = 1, RESTS_TOUCHING = 2, RESTS_PRESSED = 4, RESTS_HELD = 8 } rest_result;
 
 /* Particles first ... first + count - 1 of a motion that may touch colliders. */
-typedef struct resting_chunk {
+typedef struct candidate_chunk {
     const contact_setting *setting;
     const collider_bounds *bounds;
     const scene_particles *particles;
@@ -254,18 +254,18 @@ typedef struct resting_chunk {
     uint32_t candidate[contact_chunk]; /* bits of the colliders that the particle may touch */
     uint32_t done[contact_chunk];      /* bits of rest_result */
     scalar *change; /* [3][contact_chunk], written: [m/s] by the contact; [6][contact_chunk] for find_pressing */
-} resting_chunk;
+} candidate_chunk;
 
 /* Sets `candidate`, `list`, `nearby` and `way` for the motion from kept.x0 to x, for free particles. Returns whether
    there is a candidate. */
-typedef bool near_kernel(resting_chunk *);
+typedef bool near_kernel(candidate_chunk *);
 
 /* Kernels for particles with one candidate. They set `done`, and add impulses to those of the colliders. stop_resting
    completes a kick: it writes v and change. move_resting completes motions of particles that rest or slide: it writes x,
    v, predicted and change. For WHOLE_STEP_CONTACTS it also replaces kept.x0 by x of the motion without contacts.
    find_pressing finds particles that press on their collider at the start of a step, where v of the step is their
    residual. It adds no impulses, and writes their normals and then their velocities along the surface to change. */
-typedef void rest_kernel(resting_chunk *);
+typedef void rest_kernel(candidate_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct common_kernels {
@@ -297,8 +297,8 @@ typedef struct common_kernels {
     rest_kernel *stop_resting, *move_resting, *find_pressing;
 } common_kernels;
 
-/* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain
-   most: the forces of bands, and kick_drift without held forces. */
+/* All kernels of a vector width. Besides `common`, they are compiled for vectors of 64 bytes as well, because they gain
+   most. With held forces, they call those of `common`. */
 typedef struct scene_kernels {
     const common_kernels *common;
     band_kernel *band_forces;                    /* the forces of all bands */

@@ -47,7 +47,7 @@ static double motion_of(const contact_body *b)
 /* Bound k: a body in the precision of the scene. Its reach grows by more than the rounding errors of coordinates. */
 static void place_bound(collider_bounds *bounds, unsigned k, const contact_body *b, scalar largest_radius)
 {
-    const double rounding = 64 * (double)SCALAR_EPSILON * (b->size + (double)largest_radius);
+    const double rounding = 64 * (double)SCALAR_EPSILON * (b->rounding_scale + (double)largest_radius);
     collider_bound *const to = &bounds->each[k];
     to->shape = is_custom(b->shape) ? SPRING_SPHERE : b->shape;
     copy3(to->at, b->start.at);

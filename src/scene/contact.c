@@ -19,8 +19,8 @@
  *              -(1 + e) n.u n times the mass, with friction along -u_t of at most mu times its size. The rest of the
  *              path, (1 - theta) h, has the changed velocity.
  *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
- *              is lambda n, with the lambda for which the path ends on the surface. Late, in the second half of the
- *              step, at a second contact in the step, or after item 1: the path is projected to the tangent plane, and w
+ *              is lambda n, with the lambda for which the path ends on the surface. Late (in the second half of the step,
+ *              at a second contact of the step, or after item 1): the path is projected to the tangent plane, and w
  *              loses its component into the collider.
  *           5. Colliders are tested again with a path that others changed. A particle that is still inside at the end
  *              (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
@@ -48,16 +48,16 @@
 #include "../simd/size_begin.h"
 
 enum {
-    impact_iterations = 12, /* of step 2 */
-    friction_passes = 2,    /* of step 4: friction changes where the path ends, and so the impulse */
-    surface_iterations = 3, /* of step 4 */
+    impact_iterations = 12, /* of item 2 */
+    friction_passes = 2,    /* of item 4: friction changes where the path ends, and so the impulse */
+    surface_iterations = 3, /* of item 4 */
     custom_iterations = 8,  /* the same for custom bodies */
     march_steps = 256,      /* of find_custom_impact() */
     root_steps = 40,
     walk_steps = 128, /* of walk() */
     walk_pushes = 8,
     contact_rounds = 8,    /* contacts of a particle in a drift */
-    corner_passes = 6,     /* of step 5 */
+    corner_passes = 6,     /* of item 5 */
     most_constraints = 12, /* on a particle; further ones are ignored */
     seidel_rounds = 32,    /* where no particle can fit, as between plates that close */
     slide_parts = 4        /* of a step in which friction turns */
@@ -326,7 +326,7 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
 }
 
 /* [m] The size of numbers that its distances are computed from. */
-static double size_at(const contact_body *b, const body_pose *pose)
+static double rounding_scale_at(const contact_body *b, const body_pose *pose)
 {
     double size = size_sum(pose->at) + b->radius + size_sum(pose->segment) + (is_custom(b->shape) ? b->thickness : 0);
     for (int a = 0; a < (b->flat ? 2 : 3) && b->shape == SPRING_BOX; a++)
@@ -381,7 +381,7 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
                     2 * length3(subtract(b->end.axis[1], b->start.axis[1])) +
                     2 * length3(subtract(b->end.axis[2], b->start.axis[2]));
     }
-    b->size = size_at(b, &b->start);
+    b->rounding_scale = rounding_scale_at(b, &b->start);
     find_bounds(b, angle, c->bound);
 }
 
@@ -489,8 +489,9 @@ SPRING_INLINE void find_nearest(contact_particle *p, const contact_body *b, doub
     find_nearest_to(p, b, fraction, y.x, y.y, y.z, out);
 }
 
-/* All contacts at x, with their normals in the scene. More than one only for some custom bodies. The end of a step is
-   the start of the next one, with the same bits: the frame of a capsule, which begins anew, is not used. */
+/* All contacts at x, with their normals in the scene. More than one only for some custom bodies. The end of a step
+   must give the same bits as the start of the next one. A capsule has another frame in each step, so it is computed in
+   the axes of the scene. */
 static unsigned find_all(contact_particle *p, const contact_body *b, const body_pose *pose, vector3 x,
                          near_point out[3])
 {
@@ -517,7 +518,7 @@ SPRING_INLINE double slop_at(const contact_setting *s, vector3 x, double size, d
 
 SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, const contact_body *b)
 {
-    return slop_at(s, p->x0, b->size, p->radius);
+    return slop_at(s, p->x0, b->rounding_scale, p->radius);
 }
 
 /* [m] Contacts whose gaps differ by less act together in a stop at x. It depends on the pose and not on the step, so
@@ -525,7 +526,7 @@ SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p
 static double gap_tolerance(const contact_setting *s, const contact_particle *p, const contact_body *b, bool at_end,
                             vector3 x)
 {
-    return same_place * slop_at(s, x, size_at(b, at_end ? &b->end : &b->start), p->radius);
+    return same_place * slop_at(s, x, rounding_scale_at(b, at_end ? &b->end : &b->start), p->radius);
 }
 
 /* [m/s] Velocity of a point of the frame at x. */
@@ -582,7 +583,7 @@ typedef struct slide_result {
     bool sticks;  /* at the end */
     vector3 mean; /* [m/s] velocity */
     vector3
-        kick; /* [m/s] the velocity from which the last kick, A/2 with friction F/2, ends on the velocity at the end */
+        kick; /* [m/s] velocity before the last kick, A/2 with friction F/2, that results in the velocity at the end */
 } slide_result;
 
 /* u' = A - F u/|u| from u0 for a unit of time, with the stop at u = 0 and what follows. On a line it is exact. Where
@@ -669,12 +670,13 @@ typedef struct meeting {
     double slop;        /* [m] */
     vector3 start, way; /* [m] in the frame: the chord */
     near_point at;      /* at the time of the contact */
-    double fraction, gap, push;
-    vector3 place;    /* in the frame */
-    vector3 n, n_end; /* normal in the scene, and its direction at the end of the step */
-    double left;      /* [s] */
-    vector3 velocity; /* [m/s] of the surface */
-    bool walks;       /* the way is long compared with a custom body's thickness */
+    double fraction, gap;
+    double start_depth; /* [m] inside the body at the start, if that is more than the slop; else 0 */
+    vector3 place;      /* in the frame */
+    vector3 n, n_end;   /* normal in the scene, and its direction at the end of the step */
+    double time_left;   /* [s] of the step, after the contact */
+    vector3 velocity;   /* [m/s] of the surface */
+    bool walks;         /* the way is long compared with a custom body's thickness */
 } meeting;
 
 enum { NO_CONTACT = 0, CONTACT = 1, CLEAR = 2 }; /* CLEAR: the path is known to end outside */
@@ -710,7 +712,7 @@ static bool find_convex_impact(contact_particle *p, meeting *m)
 {
     for (int i = 0;; i++) {
         const double rate = approach(m);
-        if (m->push > 0)
+        if (m->start_depth > 0)
             return true;
         if (m->gap + (1 - m->fraction) * rate >= 0)
             return false;
@@ -769,7 +771,7 @@ static bool find_custom_impact(contact_particle *p, meeting *m)
     return false;
 }
 
-/* Steps 1 and 2. Returns whether there is a contact. */
+/* Items 1 and 2. Returns whether there is a contact. */
 static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 {
     const contact_body *const b = m->b;
@@ -778,17 +780,17 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->way = subtract(end_in_frame(b, p), m->start);
     m->fraction = 0;
     find_nearest(p, b, 0, m->start, &m->at);
-    m->push = m->at.gap < -m->slop ? -m->at.gap : 0;
+    m->start_depth = m->at.gap < -m->slop ? -m->at.gap : 0;
     m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
     const bool custom = is_custom(b->shape), enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
-    if (custom && m->push == 0 && !enters ? !find_custom_impact(p, m) : !custom && !find_convex_impact(p, m))
+    if (custom && m->start_depth == 0 && !enters ? !find_custom_impact(p, m) : !custom && !find_convex_impact(p, m))
         return false;
     if (m->gap < m->slop)
         m->gap = 0;
     /* Rounding errors of many steps are corrected, so that they stay below the slop. */
-    if (m->fraction == 0 && fabs(m->at.gap) > m->slop / 2 && m->push == 0)
+    if (m->fraction == 0 && fabs(m->at.gap) > m->slop / 2 && m->start_depth == 0)
         m->gap = m->at.gap;
-    m->left = (1 - m->fraction) * s->h;
+    m->time_left = (1 - m->fraction) * s->h;
     m->place = add_scaled(m->start, m->fraction, m->way);
     m->walks = custom && length3(m->way) > custom_step(b);
     const vector3 x = add_scaled(p->x0, m->fraction, p->d), n = direction_out(&b->start, m->at.normal);
@@ -812,7 +814,7 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     return true;
 }
 
-/* Step 4, late. */
+/* Item 4, late. */
 static int press_late(const contact_setting *s, contact_particle *p, const meeting *m)
 {
     const contact_body *const b = m->b;
@@ -820,11 +822,11 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
     const double rate = inner(u, m->n), lost = rate * s->h < 0 ? -rate : 0;
     const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(lost));
     p->w = add(p->w, subtract(scale(lost, m->n), friction));
-    p->d = add_scaled(p->d, -m->left, friction);
+    p->d = add_scaled(p->d, -m->time_left, friction);
     /* Onto the tangent plane, in the frame of the body: outside, if the body is convex. */
     const vector3 end = end_in_frame(b, p);
-    const double inward = m->push > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->push
-                                      : m->gap + inner(m->at.normal, subtract(end, m->place));
+    const double inward = m->start_depth > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->start_depth
+                                             : m->gap + inner(m->at.normal, subtract(end, m->place));
     if (inward < 0)
         p->d = add_scaled(p->d, -inward, m->n_end);
     near_point there;
@@ -834,14 +836,14 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
     return CONTACT;
 }
 
-/* Step 4, early: the lambda for which x + lambda |left| n lies on the surface at the end. Returns whether it surely
+/* Item 4, early: the lambda for which x + lambda |left| n lies on the surface at the end. Returns whether it surely
    does. */
 SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x, bool last_pass, double *lambda)
 {
     const contact_body *const b = m->b;
     if (b->shape == SPRING_PLANE && !b->turns)
         return true;
-    const double duration = fabs(m->left);
+    const double duration = fabs(m->time_left);
     const bool custom = is_custom(b->shape);
     const int most = m->walks ? 0 : custom ? custom_iterations : last_pass ? surface_iterations : 1;
     double last_gap = 0, last = 0;
@@ -851,7 +853,7 @@ SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x,
         const double cosine = inner(m->n, direction_out(&b->end, there.normal));
         if (fabs(there.gap) < m->slop / 4)
             return true;
-        if (!(cosine > (custom ? same_face : least_cosine))) /* in a corner, step 5 follows */
+        if (!(cosine > (custom ? same_face : least_cosine))) /* in a corner, item 5 follows */
             return false;
         double change = -there.gap / (duration * cosine);
         const double slope = there.gap - last_gap;
@@ -864,12 +866,12 @@ SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x,
     return false;
 }
 
-/* Step 4, early. start: [m/s] velocity of the particle at the start of the step; inward: [m] from the tangent plane */
+/* Item 4, early. start: [m/s] velocity of the particle at the start of the step; inward: [m] from the tangent plane */
 static int press_from_start(const contact_setting *s, contact_particle *p, const meeting *m, vector3 start,
                             double inward)
 {
     const contact_body *const b = m->b;
-    const double duration = fabs(m->left), mu = b->friction * p->friction;
+    const double duration = fabs(m->time_left), mu = b->friction * p->friction;
     const double toward = fmax(least_cosine, inner(m->n, m->n_end));
     const bool rests = m->fraction < least_fraction;
     const vector3 x0 = add_scaled(p->x0, m->fraction, p->d), x1 = add(p->x0, p->d);
@@ -879,12 +881,12 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         if (b->turns && b->shape != SPRING_CAPSULE)
             slip = scale(0.5, add(slip, slip_velocity(b, &b->end, m->at.along, x0, m->n)));
         else if (b->shape != SPRING_PLANE)
-            slip = add_scaled(slip, m->left / 2, cross(b->start.spin, slip));
+            slip = add_scaled(slip, m->time_left / 2, cross(b->start.spin, slip));
     }
     /* way along the surface, relative to it; velocity at the start, and its change by other forces */
     const vector3 way = direction_out(&b->end, subtract(end_in_frame(b, p), m->place));
-    const vector3 along = tangential(add_scaled(way, -m->left, slip), m->n);
-    const vector3 mean = scale(1 / m->left, along);
+    const vector3 along = tangential(add_scaled(way, -m->time_left, slip), m->n);
+    const vector3 mean = scale(1 / m->time_left, along);
     const vector3 u0 = tangential(subtract(start, m->velocity), m->n), A = scale(2, subtract(mean, u0));
     double lambda = fmax(0, -inward) / (duration * toward);
     slide_result end = {false, mean, mean};
@@ -911,7 +913,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
             if (!end.sticks && first > 2 * limit && inner(u0, mean) > 0.5 * first * speed)
                 end.mean = end.kick = add_scaled(mean, -limit / first, u0);
         }
-        shift = subtract(scale(m->left, end.mean), along);
+        shift = subtract(scale(m->time_left, end.mean), along);
     }
     if (rests && end.sticks && length3(u0) * duration <= m->slop && !b->slips) { /* carried exactly */
         vector3 there = m->start;
@@ -932,7 +934,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
     return clear ? CONTACT | CLEAR : CONTACT;
 }
 
-/* Steps 1, 3 and 4. */
+/* Items 1, 3 and 4. */
 static int collide_once(const contact_setting *s, contact_particle *p, const meeting *m)
 {
     const contact_body *const b = m->b;
@@ -945,17 +947,17 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
         const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(normal));
         const vector3 change = subtract(scale(normal, m->n), friction);
         p->w = add(p->w, change);
-        p->d = add_scaled(p->d, m->left, change);
+        p->d = add_scaled(p->d, m->time_left, change);
         start = add(start, change);
     }
-    if (m->push > 0)
-        p->d = add_scaled(p->d, m->push, m->n);
-    if (!(fabs(m->left) > 0))
+    if (m->start_depth > 0)
+        p->d = add_scaled(p->d, m->start_depth, m->n);
+    if (!(fabs(m->time_left) > 0))
         return CONTACT;
     const vector3 end = end_in_frame(b, p);
-    const double inward = m->push > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->push
-                                      : m->gap + inner(m->at.normal, subtract(end, m->place));
-    if (inward >= 0 && m->push == 0) {
+    const double inward = m->start_depth > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->start_depth
+                                             : m->gap + inner(m->at.normal, subtract(end, m->place));
+    if (inward >= 0 && m->start_depth == 0) {
         near_point there;
         if (b->shape == SPRING_PLANE && !b->turns)
             return CONTACT | CLEAR;
@@ -963,7 +965,7 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
         if (there.gap >= 0)
             return CONTACT | CLEAR;
     }
-    if (m->fraction > 0.5 || m->again || m->push > 0)
+    if (m->fraction > 0.5 || m->again || m->start_depth > 0)
         return press_late(s, p, m);
     return press_from_start(s, p, m, start, inward);
 }
@@ -1218,7 +1220,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     return nearby;
 }
 
-/* Step 5, after all colliders. clear: bits of the colliders outside of which the path is known to end */
+/* Item 5, after all colliders. clear: bits of the colliders outside of which the path is known to end */
 static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby, uint32_t clear)
 {
     constraint c[most_constraints];

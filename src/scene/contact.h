@@ -48,8 +48,8 @@ typedef struct contact_body {
     bool flat;     /* two axes */
     uint32_t bits; /* of the masks of particles */
     double half[3], radius, friction, restitution, thickness;
-    double size;     /* [m] of the coordinates that a gap is computed from: for rounding errors */
-    vector3 surface; /* [m/s] in the frame */
+    double rounding_scale; /* [m] of the coordinates that a gap is computed from */
+    vector3 surface;       /* [m/s] in the frame; of spheres and capsules, in the scene */
     spring_gap_fn *gap;
     void *user;
     body_pose start, end;

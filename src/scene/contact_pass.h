@@ -16,11 +16,11 @@ typedef struct scene_contacts {
     const scalar *radius; /* [m] */
     size_t radius_stride; /* from particle to particle: 1, or 0: one vector for all particles */
     scalar equal_radius[padding];
-    const scalar *x;        /* [m] positions at the end of the step */
-    const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
-    uint32_t *touched;      /* written: the same for this step; may be `before` */
-    scalar *clearance;      /* [m] by chunk and collider: see contact_near_tmpl.h */
-    bool begins;            /* the first step of a call: the clearance is not known yet */
+    const scalar *x;                /* [m] positions at the end of the step */
+    const uint32_t *touched_before; /* by particle: bit i is set if collider i was touched in the previous step */
+    uint32_t *touched;              /* written: the same for this step; may be `touched_before` */
+    scalar *clearance;              /* [m] by chunk and collider: see contact_near_tmpl.h */
+    bool begins;                    /* the first step of a call: the clearance is not known yet */
 } scene_contacts;
 
 /* A particle in a motion with contacts. Its free motion has the operations of leapfrog_particles_tmpl.h. */
@@ -202,7 +202,7 @@ SPRING_NOINLINE bool advance_alone(const spring_scene *s, const scene_contacts *
 }
 
 /* Removes candidates that masks exclude. */
-static inline void apply_masks(const spring_scene *s, resting_chunk *r)
+static inline void apply_masks(const spring_scene *s, candidate_chunk *r)
 {
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
     for (uint32_t l = 0; l < r->listed && masks != NULL; l++) {
@@ -215,7 +215,7 @@ static inline void apply_masks(const spring_scene *s, resting_chunk *r)
 
 /* Prepares the arguments of a rest_kernel for a chunk of particles. */
 static void begin_rest(const spring_scene *s, const scene_contacts *t, const scene_particles *p, const scene_motion *m,
-                       kept_motion *kept, size_t from, size_t count, resting_chunk *r)
+                       kept_motion *kept, size_t from, size_t count, candidate_chunk *r)
 {
     r->setting = &t->setting;
     r->bounds = t->bounds;
@@ -232,7 +232,7 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
 }
 
 /* Lists free particles that touch colliders, and these as candidates. Returns their number. */
-static inline uint32_t list_touching(const spring_scene *s, resting_chunk *r, const uint32_t *touched)
+static inline uint32_t list_touching(const spring_scene *s, candidate_chunk *r, const uint32_t *touched)
 {
     const scene_particles *const p = r->particles;
     const scalar *const inverse_mass = p->inverse_mass + r->first * p->mass_stride;
@@ -255,7 +255,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
                                 particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
                                 size_t count, const uint32_t *touched, const scalar *x, bool at_end)
 {
-    resting_chunk r;
+    candidate_chunk r;
     scalar change[3][contact_chunk];
     const bool fine = kernel(p, m, from, from + count); /* false is no failure yet: stops may slow particles down */
     begin_rest(s, t, p, m, NULL, from, count, &r);
@@ -293,7 +293,7 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
                                 size_t count)
 {
     kept_motion kept;
-    resting_chunk r;
+    candidate_chunk r;
     kernels->keep_motion(p, m, from, count, &kept);
     const bool fine = kernel(p, m, from, from + count);
     memset(t->touched + from, 0, count * sizeof *t->touched);
@@ -341,7 +341,7 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
                                   size_t count)
 {
     const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
-    const uint32_t *const touched = (kicks ? t->touched : t->before) + from;
+    const uint32_t *const touched = (kicks ? t->touched : t->touched_before) + from;
     const bool any_touched = (kicks || m->ends_previous) && any_set(touched, count);
     if (kicks)
         return !any_touched ? kernel(p, m, from, from + count)

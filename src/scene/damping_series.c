@@ -14,7 +14,7 @@ static void bessel_step(double rho, unsigned k, double *above, double *here)
     *here = below;
 }
 
-/* Solves the symmetric system for the weights (a, b, e), which make the moments of K over c_-s ... c_s equal to those
+/* Solves the symmetric system for the weights f, which make the moments of q = k^2/rho over c_-s ... c_s equal to those
    of e^-z: 1, 1 and 3 + 1/rho. m: the moments of I_k. */
 static void solve_moments(const double m[5], double rho, double weight[3])
 {
@@ -61,8 +61,8 @@ damping_series spring_damping_series(double reach)
 
 static void find_series_term(const damping_series *p, series_term *t)
 {
-    const double K = (double)t->k * t->k / p->rho;
-    t->c = t->here * (p->weight[0] + K * (p->weight[1] + K * p->weight[2]));
+    const double q = (double)t->k * t->k / p->rho;
+    t->c = t->here * (p->weight[0] + q * (p->weight[1] + q * p->weight[2]));
     t->d = 4 / p->rho * t->sums_c;
     t->e = 2 / p->rho * t->sums_d;
 }

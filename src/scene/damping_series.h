@@ -12,7 +12,7 @@ typedef struct damping_series {
     unsigned terms;           /* s; 0: links are damped explicitly */
     double rho;               /* the following are for s > 2 */
     double last, beyond_last; /* I_s and I_{s+1}, divided by I_0 */
-    double weight[3];         /* a, b, e */
+    double weight[3];         /* f */
 } damping_series;
 
 /* The coefficients of term k, and what those of term k - 1 follow from. */

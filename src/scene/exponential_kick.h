@@ -2,25 +2,29 @@
 /*
  * Leapfrog with heavy link damping: drift, exponential kick, drift.
  *
- * Method    With the directions of links frozen, damping alone changes velocities by v' = r - Z (v - v0), where
- *           Z = M^-1 C and r is the acceleration at the middle of the step and the velocity v0. The exact change in the
- *           time h is h p(hZ) r with p(z) = (1 - e^-z)/z:
+ * Symbols   h is the time step. M has the masses, C the damping of the links, K their stiffness. Z = M^-1 C, and G bounds
+ *           its spectrum. r, the residual, is the acceleration at the positions x' of the middle of the step, with the
+ *           velocities v0 of its start. s is the number of terms of the series.
+ * Method    With the directions of links frozen, damping alone changes velocities by v' = r - Z (v - v0). The exact
+ *           change in the time h is h p(hZ) r with p(z) = (1 - e^-z)/z:
  *
  *               x' = x0 + h/2 v0;   v1 = v0 + h p(hZ) r(x', v0);   x1 = x' + h/2 v1
  *
  *           p is computed as a polynomial of degree s - 1. For s = 2 it is 1 - z/2. Otherwise let
- *           rho >= (h G)/2, where G bounds the spectrum of Z, and Y = 1 - hZ/rho. A sum of Chebyshev polynomials with
- *           positive coefficients approximates e^-z, and has its value, slope and second derivative at 0:
+ *           rho >= (h G)/2 and Y = 1 - hZ/rho. A sum of Chebyshev polynomials with positive coefficients approximates
+ *           e^-z:
  *
- *               R = c_0 + 2 sum c_k T_k(Y),   c_k = I_k(rho) (a + b K + e K^2),   K = k^2/rho
+ *               R = c_0 + 2 sum c_k T_k(Y),   c_k = I_k(rho) (f_0 + f_1 q + f_2 q^2),   q = k^2/rho
  *
- *           I_k: modified Bessel functions, by their downward recurrence (Miller). Then
+ *           I_k: modified Bessel functions, by their downward recurrence (Miller). f: numbers for which R has the value,
+ *           slope and second derivative of e^-z at 0 (damping_series.c). Then
  *
  *               p = (1 - R)/z = d_0/2 + sum d_k T_k(Y),   d_k = (4/rho) sum_{j>k} (j - k) c_j
  *               m = (1 - p)/z = e_0/2 + sum e_k T_k(Y),   e_k = (2/rho) sum_{j>k} (j - k) d_j
  *
  *           Clenshaw's recurrence b_k = d_k r - e_k r2 + 2 Y b_{k+1} - b_{k+2} requires s - 1 evaluations of damping
- *           forces. The result p r - m r2 is its last b_0, with d_0/2, e_0/2 and Y in place of 2 Y.
+ *           forces. r2 corrects for turning, see below. The result p r - m r2 is the last b_0, which has d_0/2, e_0/2 and
+ *           Y in place of 2 Y.
  * Turning   Directions of links turn during a step. If the ends of a link of length l move across it at the relative
  *           velocity V, its rate changes by delta = l/(2h) t (1 + t/4 + t^2/8), t = min(1, (h V/l)^2), in half a step:
  *           this is the exact value of a steady rotation, to third order in t. So the rate in r is lower by delta, and
@@ -108,15 +112,15 @@ static inline pressing pressing_of(const scene_step *s, const contact_surface *s
     const double rounding = 64 * (double)SCALAR_EPSILON * speed, limit = surface->friction * pressed;
     if (!(pressed > 0) || leaving > rounding)
         return NOT_PRESSED;
-    double speed_along = 0, pulling = 0; /* squares */
+    double speed_square = 0, pull_square = 0;
     for (uint32_t a = 0; a < axes; a++) {
         const double along = (double)s->whole.v0[a * stride + i] - of_surface[a] - leaving * n[a];
         const double force = (double)residual[a * stride + i] + pressed * n[a];
-        speed_along += along * along;
-        pulling += force * force;
+        speed_square += along * along;
+        pull_square += force * force;
         sliding[a] = (scalar)along;
     }
-    return speed_along <= rounding * rounding && pulling <= limit * limit ? PRESSED_AND_HELD : PRESSED;
+    return speed_square <= rounding * rounding && pull_square <= limit * limit ? PRESSED_AND_HELD : PRESSED;
 }
 
 /* The surfaces of the colliders with these bits that particle i touches at x. Returns their number. */
@@ -132,12 +136,12 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
 
 /* Whether particle i is pressed, and how: for a particle that touches several colliders, a custom body, or a surface
    that moves in its frame. */
-SPRING_NOINLINE bool is_pressed(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
+SPRING_NOINLINE bool find_pressing_surfaces(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
 {
     const uint32_t axes = s->particles.axes;
     bool pressed = false;
     contact_surface surface[most_surfaces];
-    const unsigned surfaces = surfaces_at(s, s->contacts.before[i], i, false, s->whole.x0, surface);
+    const unsigned surfaces = surfaces_at(s, s->contacts.touched_before[i], i, false, s->whole.x0, surface);
     for (unsigned k = 0; k < surfaces; k++) {
         scalar normal[3] = {0}, sliding[3] = {0};
         const pressing how = pressing_of(s, &surface[k], i, residual, normal, sliding);
@@ -164,8 +168,8 @@ static inline bool touching_is_unknown(const scene_step *s)
     return s->contacts.setting.count > 0 && elapsed_at(s, 0) == 0;
 }
 
-/* Finds the particles of a chunk that touch colliders. Its motion ends where it starts. */
-SPRING_NOINLINE void find_touching(const scene_step *s, resting_chunk *r)
+/* Finds the particles of a chunk that touch colliders. r->step is a motion with x = x0. */
+SPRING_NOINLINE void find_touching(const scene_step *s, candidate_chunk *r)
 {
     const scene_contacts *const t = &s->contacts;
     uint32_t *const touched = t->touched + r->first;
@@ -192,10 +196,10 @@ static inline double kick_weight(const scene_step *s, size_t i)
     return inverse_mass / (1 + q * (0.5 + q / (12 + 2 * q)));
 }
 
-/* Finds the pressed particles of a chunk, and takes their loads out of the residual, v of this motion. */
+/* Finds the pressed particles of a chunk, and takes their loads out of the residual, which is v of the motion m. */
 SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *m, size_t from, pressed_list *found)
 {
-    resting_chunk r;
+    candidate_chunk r;
     kept_motion kept;
     scalar vector[6][contact_chunk]; /* normals, and velocities along the surface */
     const size_t left = s->particles.count - from, stride = s->scene->layout.stride;
@@ -203,7 +207,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
     begin_rest(s->scene, &s->contacts, &s->particles, m, &kept, from, left < contact_chunk ? left : contact_chunk, &r);
     if (touching_is_unknown(s))
         find_touching(s, &r);
-    if (list_touching(s->scene, &r, s->contacts.before + from) == 0)
+    if (list_touching(s->scene, &r, s->contacts.touched_before + from) == 0)
         return;
     r.change = vector[0];
     r.place = m->x0 + from;
@@ -219,7 +223,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
             }
             while (r.candidate[k] != UINT32_C(1) << p->collider)
                 p->collider++;
-        } else if (r.done[k] != 0 || !is_pressed(s, i, m->v, p)) {
+        } else if (r.done[k] != 0 || !find_pressing_surfaces(s, i, m->v, p)) {
             continue;
         }
         p->particle = (uint32_t)i;
@@ -297,7 +301,7 @@ static inline pressed_list find_pressed(scene_step *s, const scalar *x, scalar *
     start.x = (scalar *)start.x0; /* which is not written to */
     start.force = s->forces.force;
     if (touching_is_unknown(s))
-        s->contacts.before = s->contacts.touched;
+        s->contacts.touched_before = s->contacts.touched;
     for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i += contact_chunk)
         find_pressed_from(s, &start, i, &found);
     add_friction(s, &found, x, residual);
@@ -305,8 +309,9 @@ static inline pressed_list find_pressed(scene_step *s, const scalar *x, scalar *
 }
 
 /* Removes the components of b - from in which pressed particles are not free. from: NULL: 0, and b is a term of the
-   series. What is removed from a term changes the result by the same amount, besides damping forces: without them,
-   Clenshaw's recurrence 2 b_{k+1} - b_{k+2} continues a difference of terms, and the result is such a difference. */
+   series. A vector that is removed from a term b_k lowers the result b_0 by the same vector, apart from its damping
+   forces, because 2 b_{k+1} - b_{k+2} continues a difference linearly. So p->removed is the sum of these vectors
+   until the last term, where it becomes the change of the velocity. */
 SPRING_NOINLINE void project_pressed(const scene_step *s, const pressed_list *pressed, const scalar *from, scalar *b)
 {
     const size_t stride = s->scene->layout.stride;
@@ -336,7 +341,7 @@ static inline void record_change(const scene_step *s, size_t i, unsigned k, cons
 
 /* Gives each pressed particle back what its colliders took from its velocity v1 in the kick: the load, and friction. The
    contacts that are computed next remove the load again, with the friction that belongs to it. x: positions of the kick */
-static inline void load_pressed(const scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
+static inline void restore_loads(const scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
 {
     const scene_particles *const p = &s->particles;
     for (size_t j = 0; j < pressed->count; j++) {
@@ -361,13 +366,13 @@ static inline void load_pressed(const scene_step *s, const pressed_list *pressed
    damped them, and the next would be too late: a body would bounce in every step, and gain elastic energy. */
 SPRING_NOINLINE void damp_bounces(const scene_step *s)
 {
-    const scalar *const left = scene_read(s->scene, ARRAY_SUMS);
+    const scalar *const remaining = scene_read(s->scene, ARRAY_SUMS);
     const size_t stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
     for (unsigned k = 0; k < s->contacts.setting.count; k++) {
         const uint32_t bit = UINT32_C(1) << k;
         for (size_t i = 0; s->contacts.setting.body[k].restitution > 0 && i < s->particles.count; i++) {
-            if ((s->contacts.touched[i] & bit) == 0 || left[i] == 1)
+            if ((s->contacts.touched[i] & bit) == 0 || remaining[i] == 1)
                 continue;
             contact_surface surface[most_surfaces];
             const unsigned surfaces = surfaces_at(s, bit, i, true, s->whole.x, surface);
@@ -375,7 +380,7 @@ SPRING_NOINLINE void damp_bounces(const scene_step *s)
                 const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
                               u = vector_minus(v, surface[j].velocity);
                 const double leaving = u.x * n.x + u.y * n.y + u.z * n.z;
-                const double removed = (1 - (double)left[i]) * leaving;
+                const double removed = (1 - (double)remaining[i]) * leaving;
                 if (!(leaving > 0))
                     continue;
                 store_vector(s->whole.v + i, stride, axes, vector_plus(v, -removed, n));
@@ -500,7 +505,7 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     if (!kick_exponentially(s, &pressed, drift.x, s->h, v1, NULL, SCALAR_MAX))
         return failed;
     if (pressed.count > 0)
-        load_pressed(s, &pressed, drift.x, v1);
+        restore_loads(s, &pressed, drift.x, v1);
     const scene_stage kicked = {.v = v1};
     end.stage = &kicked;
     end.contacts = WHOLE_STEP_CONTACTS;
