@@ -38,7 +38,7 @@ timed() (
     times >"$1.times"
     awk -v wall=$((SECONDS - begin)) '{ for (i = 1; i <= 2; i++) { split($i, t, /[ms]/); sum += 60 * t[1] + t[2] } }
         END { printf "%d %d\n", wall, sum }' "$1.times" >"$1"
-    exit $status
+    exit "$status"
 )
 
 # start NAME COMMAND...: beside the parts that follow, until the part of that name, which is given no command

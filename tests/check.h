@@ -34,6 +34,9 @@ uint64_t random_bits(void);
 double random_uniform(double low, double high);
 double random_log(double low, double high); /* uniform in the logarithm */
 
+/* The number of random cases to test: `usual`, divided by the environment variable SPRING_FEWER, for slow builds. */
+size_t random_cases(size_t usual);
+
 typedef struct test {
     const char *name;
     void (*run)(void);

@@ -497,19 +497,18 @@ SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, si
     inlined_repeat_tile(force, ring, slots, axis, axes);
 }
 
+/* The place in the ring of a band that is `offset` before a place. */
+SPRING_INLINE ptrdiff_t place_before(const scene_band *band, ptrdiff_t place)
+{
+    return place < band->back ? place - band->back + band->ring : place - band->back;
+}
+
 /* ---------------------------------------------------------------------------------------------- three-point links */
 
 /* Whether links of a band whose lower ends are `distance` before a tile at t act on it. */
 SPRING_INLINE bool reaches(const scene_band *band, ptrdiff_t distance, ptrdiff_t t)
 {
     return t < band->end + distance && t + tile > band->start + distance;
-}
-
-/* The place in a ring that is `distance` before a place. */
-SPRING_INLINE ptrdiff_t place_before(ptrdiff_t place, ptrdiff_t distance, ptrdiff_t ring)
-{
-    const ptrdiff_t other = place - distance % ring;
-    return other < 0 ? other + ring : other;
 }
 
 /* Adds 2 middle - low - high to the forces on a tile. NULL: no link of the band acts there */
@@ -550,11 +549,10 @@ SPRING_NOINLINE void add_three_point_bands(const scene_links *s, const scalar *x
             three_point_tile(s, band, x, v, t, count, low, axis);
         if (place == 0)
             inlined_repeat_tile(low, ring, count, axis, s->axes);
-        const scalar *const middle = kept + place_before(place, band->offset, ring);
-        const scalar *const high = kept + place_before(place, 2 * band->offset, ring);
+        const ptrdiff_t middle = place_before(band, place), high = place_before(band, middle);
         add_triple(out->force + t, s->stride, count, s->axes, has_low ? low : NULL,
-                   reaches(band, band->offset, t) ? middle : NULL, reaches(band, 2 * band->offset, t) ? high : NULL,
-                   axis);
+                   reaches(band, band->offset, t) ? kept + middle : NULL,
+                   reaches(band, 2 * band->offset, t) ? kept + high : NULL, axis);
     }
 }
 
@@ -579,7 +577,7 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
         const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
-            const ptrdiff_t ring = band->ring, other = place[r] - band->back;
+            const ptrdiff_t ring = band->ring;
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + place[r];
             const ptrdiff_t end = (band->end + (ptrdiff_t)lanes - 1) / (ptrdiff_t)lanes * (ptrdiff_t)lanes;
@@ -594,7 +592,7 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
             if (place[r] == 0)
                 repeat(force, ring, count, axis, axes);
             if (t < band->end + band->offset && t + tile > band->start + band->offset)
-                minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
+                minus[minuses++] = (kept_forces){kept + place_before(band, place[r]), axis};
             place[r] = place[r] + tile < ring ? place[r] + tile : 0;
         }
         sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);

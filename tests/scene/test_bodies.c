@@ -503,7 +503,7 @@ static void plates(double thick, double speed, double angle, double dt, size_t *
 static void no_tunnelling(void)
 {
     size_t contacts = 0, through = 0, around = 0;
-    const size_t wanted = getenv("CONTACTS") != NULL ? (size_t)atol(getenv("CONTACTS")) : 20000;
+    const size_t wanted = getenv("CONTACTS") != NULL ? (size_t)atol(getenv("CONTACTS")) : random_cases(20000);
     for (int i = 0; contacts < wanted; i++)
         plates(i % 2 ? 0.1 : 0.002, i % 2 ? 500 : 100, i % 3 ? 0.2 : 0.05, 1. / 480, &contacts, &through, &around);
     printf("# %zu contacts, %zu through a face, %zu around an edge in a step\n", contacts, through, around);

@@ -1325,6 +1325,7 @@ int main(int argc, char **argv)
         }
     if (argc > 2)
         scenes = strtoul(argv[2], NULL, 10);
+    scenes = random_cases(scenes);
     if (argc > 3 && strcmp(argv[3], "states") == 0)
         return RUN_TESTS("states of random scenes", of_states);
     return RUN_TESTS("random scenes", tests);
