@@ -161,7 +161,8 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
    it has no tension and no energy. A longer link has the tension max(0, stiffness (length - rest) + damping rate), so
    damping does not push either. (Exception: where leapfrog damps links by an exponential kick, see
    spring_scene_advance(), the damping of a taut link that becomes shorter may push.) Requires two or three axes.
-   Leapfrog and RK4 have order 2 where a link becomes taut or slack. */
+   Where a link becomes taut or slack, leapfrog and RK4 have order 2 without damping of this link, and order 1 with
+   damping. */
 #define SPRING_SCENE_TENSION_ONLY UINT32_C(8)
 
 /** Enables held forces, see SPRING_FORCE. */
@@ -366,9 +367,10 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain
  * (Omega dt)^2 (tests/scene/test_forces.c).
  *
- * Contacts have order 2 with leapfrog and RK4, also across impacts, with colliders that turn and accelerate, and with
- * friction across stops and reversals of direction. They have order 1 with symplectic Euler. See
- * spring_scene_set_colliders(). Colliders do not change the stable step.
+ * Contacts have order 2 with leapfrog and RK4, also with colliders that turn and accelerate, and with friction across
+ * stops and reversals of direction. Impacts have order 1 if drag, link damping or a callback depends on velocities,
+ * because these forces jump. With symplectic Euler, contacts have order 1. See spring_scene_set_colliders(). Colliders
+ * do not change the stable step.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
@@ -550,19 +552,20 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and
  * spin_acceleration. If V is not known, use (next - previous)/(2 T) and (next - 2 present + previous)/T^2, or take the
  * pose and the velocity V that the collider has reached, with the acceleration 16/9 (next - present - V T)/T^2: an
- * error of the pose or of V then shrinks to about a third in each frame, while 2 in the place of 16/9 would keep the
- * error of V and change its sign in each frame. A velocity without acceleration is enough for bodies that nothing
- * rests on: static friction breaks where the velocity jumps from frame to frame.
+ * error of V then leaves an error of the pose that is 6 % as large after four more frames, while 2 in the place of 16/9
+ * would keep the error of V and change its sign in each frame. A velocity without acceleration is enough for bodies
+ * that nothing rests on: static friction breaks where the velocity jumps from frame to frame.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
  * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed,
- * in the frame of the body. A bounce therefore has order 2, and no particle passes through a single collider at any
- * speed (in single precision, if the collider is thicker than 1e-3 of its size and of its distance from the origin). A
- * body that turns by more than about 0.2 rad in a step may cut the path of a fast particle, and a particle may pass
- * around an edge within a step. A capsule whose ends have different velocities turns, too. A particle that static
- * friction can hold is carried along with the motion of the body, at any time step. On the spinning surface of a sphere
- * or a capsule it is held to second order. If an impact moves the particle less than 8 eps (|x| + |at| + size) into the
- * collider in a step, this is treated as a rounding error, and the particle does not bounce.
+ * in the frame of the body. A bounce therefore has order 2 if no force depends on velocity, and no particle passes
+ * through a single collider at any speed (in single precision, if the collider is thicker than 1e-3 of its size and of
+ * its distance from the origin). A body that turns by more than about 0.2 rad in a step may cut the path of a fast
+ * particle, and a particle may pass around an edge within a step. A capsule whose ends have different velocities turns,
+ * too. A particle that static friction can hold is carried along with the motion of the body, at any time step. On the
+ * spinning surface of a sphere or a capsule it is held to second order. If an impact moves the particle less than 8 eps
+ * (|x| + |at| + size) into the collider in a step, this is treated as a rounding error, and the particle does not
+ * bounce.
  *
  * A particle that touches several colliders is kept out of all of them, also in a groove of 0.5 degrees. In a groove of
  * 90 to 165 degrees without friction, it may keep oscillating at up to 2 g dt. A custom body that is concave
@@ -574,8 +577,8 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * step. If more calls would be needed, the particle stops at the last point that is known to be outside. A gap or a
  * normal that is not finite makes the step fail with SPRING_ENONFINITE, or SPRING_EUNSTABLE in a scene with max_speed.
  *
- * With restitution 1, no friction and no damping, energy is not conserved: it grows, and it grows faster with longer
- * steps. See docs/evidence.md.
+ * With restitution 1, no friction and no damping, the energy of particles with links is not conserved: it grows, and it
+ * grows faster with longer steps. See docs/evidence.md.
  *
  * @param[in] c      [count] colliders; may be NULL if count is 0
  * @param[in] count  number of colliders, at most `colliders` of the definition; 0 removes all colliders

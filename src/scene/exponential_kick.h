@@ -232,7 +232,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
             free[a] = m->v[a * stride + i];
         free_component(p, axes, free);
         for (uint32_t a = 0; a < axes; a++) {
-            p->removed[a] = m->v[a * stride + i] - free[a];
+            p->taken[a] = m->v[a * stride + i] - free[a];
             m->v[a * stride + i] = free[a];
         }
         found->count++;
@@ -284,11 +284,11 @@ SPRING_NOINLINE void add_friction(scene_step *s, const pressed_list *pressed, co
         const scalar weight = (scalar)kick_weight(s, i);
         scalar load[3];
         for (uint32_t a = 0; a < s->particles.axes; a++)
-            load[a] = residual[a * stride + i] + p->removed[a] - weight * s->forces.force[a * stride + i];
+            load[a] = residual[a * stride + i] + p->taken[a] - weight * s->forces.force[a * stride + i];
         set_friction(s, p, coefficient, load);
         for (uint32_t a = 0; a < s->particles.axes; a++) {
             residual[a * stride + i] += p->friction[a];
-            p->removed[a] -= p->friction[a];
+            p->taken[a] -= p->friction[a];
         }
     }
 }
@@ -330,6 +330,32 @@ SPRING_NOINLINE void project_pressed(const scene_step *s, const pressed_list *pr
     }
 }
 
+/* The component of what was removed from a particle along its normals; positive if colliders pulled it. */
+static inline scalar removed_outwards(const scene_step *s, const pressed_particle *p)
+{
+    scalar along = 0;
+    for (uint32_t a = 0; a < s->particles.axes; a++)
+        along += p->outwards[a] * p->removed[a];
+    return along;
+}
+
+/* After a kick, removes the particles from the list that colliders have pulled, so that the kick can be repeated with
+   them free. Returns whether there are any. If they were pulled, friction of other particles would exceed its limit. */
+static inline bool free_pulled(const scene_step *s, pressed_list *pressed, scalar *residual)
+{
+    const size_t count = pressed->count;
+    pressed->count = 0;
+    for (size_t j = 0; j < count; j++) {
+        const pressed_particle *const p = &pressed->list[j];
+        if (removed_outwards(s, p) <= 0)
+            pressed->list[pressed->count++] = *p;
+        else
+            for (uint32_t a = 0; a < s->particles.axes; a++)
+                residual[a * s->scene->layout.stride + p->particle] += p->taken[a];
+    }
+    return pressed->count < count;
+}
+
 /* Adds to collider k the impulse of particle i, whose velocity at x decreases by `removed`. */
 static inline void record_change(const scene_step *s, size_t i, unsigned k, const scalar *x, vector3 removed)
 {
@@ -346,16 +372,14 @@ static inline void restore_loads(const scene_step *s, const pressed_list *presse
     const scene_particles *const p = &s->particles;
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const one = &pressed->list[j];
-        scalar along = 0, square = 0;
-        for (uint32_t a = 0; a < p->axes; a++) {
-            along += one->outwards[a] * one->removed[a];
+        const scalar along = removed_outwards(s, one);
+        scalar square = 0;
+        for (uint32_t a = 0; a < p->axes; a++)
             square += one->outwards[a] * one->outwards[a];
-        }
         for (uint32_t a = 0; a < p->axes; a++) {
             scalar *const v = &v1[a * p->stride + one->particle], before = *v;
             *v -= s->h * one->friction[a];
-            if (along < 0)
-                *v += along / square * one->outwards[a];
+            *v += along / square * one->outwards[a];
             one->removed[a] += before - *v;
         }
         record_change(s, one->particle, one->collider, x, vector_from(one->removed));
@@ -420,6 +444,8 @@ static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed
     const damping_series *const p = &s->damping;
     scalar *const residual = kick_storage(s, 0), *const storage[] = {kick_storage(s, 1), kick_storage(s, 2)};
     scene_links links = *s->links;
+    for (size_t j = 0; j < pressed->count; j++)
+        memcpy(pressed->list[j].removed, pressed->list[j].taken, sizeof pressed->list[j].removed);
     links.terms = DAMPING_TERM;
     scene_series term = {.residual = residual, .before = residual, .second_before = residual, .h = s->h};
     scene_motion m = s->whole;
@@ -502,8 +528,10 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     if (!collides)
         return (scene_outcome){.finite =
                                    kick_exponentially(s, &pressed, drift.x, s->h, v1, s->whole.x, s->whole.max_speed)};
-    if (!kick_exponentially(s, &pressed, drift.x, s->h, v1, NULL, SCALAR_MAX))
-        return failed;
+    do {
+        if (!kick_exponentially(s, &pressed, drift.x, s->h, v1, NULL, SCALAR_MAX))
+            return failed;
+    } while (free_pulled(s, &pressed, residual.v));
     if (pressed.count > 0)
         restore_loads(s, &pressed, drift.x, v1);
     const scene_stage kicked = {.v = v1};

@@ -654,6 +654,49 @@ static void coupling(void)
             }
 }
 
+/* A body of 1 kg presses a light particle down, which hangs on a spring, and moves up and down with the angular frequency
+   omega. The loop of docs/games.md in calls of length T. Returns the amplitude after 50 periods relative to that after 10. */
+static double amplitude_ratio(double omega_T)
+{
+    enum { steps = 16 };
+    const double T = 1. / 60, omega = omega_T / T, sag = 9.81 / (omega * omega);
+    const double x[6] = {0, 1, 0, 0, -0.8 * sag, 0};
+    const uint8_t pinned[2] = {1, 0};
+    const spring_link link = {.a = 0, .b = 1, .rest = 1, .stiffness = omega * omega};
+    const spring_scene_def def = {
+        .particles = 2, .position = x, .pinned = pinned, .mass_all = 1e-4, .links = 1, .link = &link, .colliders = 1};
+    spring_collider body = {.shape = SPRING_PLANE, .axis = {{0, -1, 0}}, .at = {0, x[4], 0}};
+    spring_scene *s = scene_of(&def);
+    const int period = (int)ceil(2 * PI / omega_T);
+    double before = 0, first = 0, last = 0;
+    for (int i = 0; i < 51 * period; i++) {
+        spring_impulse j;
+        set(s, &body, 1);
+        run(s, SPRING_LEAPFROG, T / steps, steps);
+        spring_scene_impulses(s, &j, 0, 1);
+        body.at[1] += T * body.velocity[1] + T * T / 2 * body.acceleration[1];
+        body.velocity[1] += j.linear[1] - 9.81 * T;
+        body.acceleration[1] = -9.81 + (3 * j.linear[1] - before) / (2 * T);
+        before = j.linear[1];
+        if (i / period == 10)
+            first = fmax(first, fabs(body.at[1] + sag));
+        if (i / period == 50)
+            last = fmax(last, fabs(body.at[1] + sag));
+    }
+    free(s);
+    return last / first;
+}
+
+static void coupled_oscillation(void)
+{
+    const double omega_T[] = {0.1, 0.2, 0.35, 0.5, 0.6};
+    for (int i = 0; i < 5; i++) {
+        const double ratio = amplitude_ratio(omega_T[i]);
+        printf("# omega T %.2f: amplitude multiplied by %.3f in 40 periods\n", omega_T[i], ratio);
+        CHECK_BELOW(ratio, 1, "the coupling adds no energy");
+    }
+}
+
 /* Impulses do not depend on the vector width. */
 static void impulses_on_all_widths(void)
 {
@@ -1157,6 +1200,7 @@ static const test tests[] = {
     {"impulses", impulse_rules},
     {"impulses on all widths", impulses_on_all_widths},
     {"coupling", coupling},
+    {"coupled oscillation", coupled_oscillation},
     {"radius, friction and mask", values_of_particles},
     {"custom bodies", custom_bodies},
     {"order on custom bodies", custom_order},

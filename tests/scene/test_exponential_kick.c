@@ -700,9 +700,9 @@ static void slides_down_a_slope(void)
         const double mu = friction[i % 3];
         spring_scene *s = block_on_plane(&m, 600, mu, up);
         stand_on_slope(s, &m, slope);
+        static state y;
         double speed[2] = {0}; /* after a third of the time, when it has settled, and at the end */
         for (int part = 0; part < 2; part++) {
-            static state y;
             advance_in_calls(s, dt, part == 0 ? third : 2 * third, i >= 3);
             get_state(s, m.def.particles, &y);
             for (size_t p = 0; p < m.def.particles; p++)
@@ -710,6 +710,44 @@ static void slides_down_a_slope(void)
         }
         const double accel = (speed[1] - speed[0]) / (2 * (double)third * dt);
         CHECK_CLOSE(accel, fmax(0, 9.81 * (sin(slope) - mu * cos(slope))), 3e-4 * 9.81, "as a rigid body");
+        for (size_t p = 0; p < m.def.particles; p++)
+            CHECK_CLOSE(y.v[3 * p] * cos(slope) - y.v[3 * p + 2] * sin(slope), speed[1], 1e-3, "no vibration");
+        free(s);
+    }
+}
+
+/* A block that is pushed along a plane stops after u^2/(2 mu g), and friction is mu times the load in each step, however
+   stiff the dampers. */
+static void stops_by_friction(void)
+{
+    static model m;
+    static state y;
+    const double mu = 0.6, u = 5, up[] = {0, 0, 1}, tolerance = sizeof(scalar) == 4 ? 1e-3 : 1e-6;
+    static const struct {
+        double damping, of_stable_step;
+    } cases[] = {{10, 0.9}, {95, 0.5}, {95, 0.9}, {224, 0.9}};
+    for (int i = 0; i < 8; i++) {
+        spring_scene *s = block_of(&m, 2, cases[i / 2].damping, mu, up);
+        const double dt = cases[i / 2].of_stable_step * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        const double angle = i % 2 ? 0.7 : 0;
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 2000) == SPRING_OK, "stable");
+        get_state(s, m.def.particles, &y);
+        const double x0 = y.x[0], y0 = y.x[1];
+        for (size_t p = 0; p < m.def.particles; p++) {
+            y.v[3 * p] += u * cos(angle);
+            y.v[3 * p + 1] += u * sin(angle);
+        }
+        spring_scene_set(s, SPRING_VELOCITY, y.v, 0, 0, m.def.particles);
+        for (double t = 0; t < 1.2 * u / (mu * 9.81); t += dt) {
+            spring_impulse j;
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "stable");
+            spring_scene_impulses(s, &j, 0, 1);
+            CHECK_BELOW(hypot(j.linear[0], j.linear[1]), mu * fabs(j.linear[2]) * (1 + tolerance) + tolerance * dt,
+                        "Coulomb's law");
+        }
+        get_state(s, m.def.particles, &y);
+        CHECK_CLOSE(hypot(y.x[0] - x0, y.x[1] - y0), u * u / (2 * mu * 9.81), u * dt,
+                    "the way of a rigid block, to a step");
         free(s);
     }
 }
@@ -872,6 +910,7 @@ int main(void)
         {"is held as if pinned", is_held_as_if_pinned},
         {"slides down a slope", slides_down_a_slope},
         {"lands with friction", lands_with_friction},
+        {"stops by friction", stops_by_friction},
         {"impacts", impacts_add_no_energy},
     };
     return RUN_TESTS("scene_exponential_kick", tests);
