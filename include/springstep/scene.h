@@ -337,7 +337,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
- * with its own sum G, but at most 1. Such a link relaxes within about 30000 mass/(stiffness dt^2) steps.
+  * with its own sum G, but at most 1. Such a link relaxes within about 30000 mass/(stiffness dt^2) steps. If colliders
+ * would pull particles during a kick, the kick is repeated without them.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11

@@ -30,7 +30,7 @@ typedef struct pressed_particle {
     scalar friction[3]; /* [m/s^2] in the kick; before it is found, [m/s] velocity along the surface */
     unsigned collider;  /* the first one that it presses on */
     scalar removed[3];  /* [m/s] change of velocity by colliders in the kick; [m/s^2] before its last term */
-    scalar taken[3];    /* [m/s^2] from its residual */
+    scalar taken[3];    /* [m/s^2] what was taken from its residual before the kick */
 } pressed_particle;
 
 /* The forces that a step keeps for the next step, in the force array of the buffer that holds the state. Only steps

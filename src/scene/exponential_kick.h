@@ -340,7 +340,8 @@ static inline scalar removed_outwards(const scene_step *s, const pressed_particl
 }
 
 /* After a kick, removes the particles from the list that colliders have pulled, so that the kick can be repeated with
-   them free. Returns whether there are any. If they were pulled, friction of other particles would exceed its limit. */
+   them free. Returns whether there are any: the list becomes shorter each time. If colliders pulled particles, friction
+   of the others would exceed its limit. */
 static inline bool free_pulled(const scene_step *s, pressed_list *pressed, scalar *residual)
 {
     const size_t count = pressed->count;
