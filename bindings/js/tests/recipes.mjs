@@ -322,26 +322,37 @@ await test("a list of 50", async () => {
     assert.deepEqual(page.errors, []);
 });
 
-await test("a list whose items are dragged", async () => {
+await test("a list whose items are dragged, also while it is sorted", async () => {
     const html = '<div id="a" style="position: absolute"></div><div id="b" style="position: absolute"></div>';
     const more = `
-        import { Springs } from "springstep";
-        import { animate } from "springstep/animate";
         const items = [...document.querySelectorAll("div")];
-        const y = new Springs(2, { duration: 0.4, bounce: 0.3 });
-        y.target.set([0, 100]);
-        y.finish();
-        animate(y, (values) => items.forEach((item, i) => (item.style.translate = "0 " + values[i] + "px")));
-        recipe.draggableItems(items, y);
-        const released = () => (window.released = [...y.value, ...y.velocity]);
+        const list = (window.list = recipe.sortable(items, 100));
+        recipe.draggableItems(items, list);
+        const released = () => (window.released = [...list.y.value, ...list.y.velocity]);
         items[1].addEventListener("pointerup", released);`;
-    const page = await opened("dragged", program(page_, "A list", "js", 1), { html, more });
+    const code = program(page_, "A list", "js") + program(page_, "A list", "js", 1);
+    const page = await opened("dragged", code, { html, more });
     await rests(page, "#b", "0px 100px");
     await flick(page, [20, 120], [0, 0.5], 150);
     const [first, second, still, speed] = await page.evaluate(() => window.released);
     assert.ok(first === 0 && still === 0 && second > 110 && speed >= 0, `${[first, second, still, speed]}`);
     await rests(page, "#b", "0px 100px");
     assert.equal(await placeOf(page, "#a"), "0px");
+    await page.mouse.move(20, 120);
+    await page.mouse.down();
+    await page.mouse.move(20, 160);
+    await page.evaluate(() => list.sort([1, 0]));
+    await rests(page, "#a", "0px 100px");
+    const [, held] = (await placeOf(page, "#b")).split(" ");
+    assert.ok(Math.abs(parseFloat(held) - 140) < 1, `a dragged item stays at the pointer: ${held}`); // may still settle
+    await page.mouse.up();
+    await rests(page, "#b", "0px");
+    await page.evaluate(() => {
+        list.stop();
+        list.sort([0, 1]);
+    });
+    await page.waitForTimeout(100);
+    assert.equal(await placeOf(page, "#b"), "0px", "a stopped animation");
     assert.deepEqual(page.errors, []);
 });
 
