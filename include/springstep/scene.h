@@ -414,16 +414,17 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *     leapfrog          2/sqrt(L)
  *     RK4               2.61/max(sqrt(L), D)
  *     RKN8              min(3.14/sqrt(L), 40/D)
- *     SRKN6             min(9.07/sqrt(L), 20/D)
+ *     SRKN6             9.07/sqrt(L);  with drag min(8/sqrt(L), 3/D)
  *     Euler             min(drag/K, 2/D) with drag, else 0
  *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = G - drag/(largest mass);  G is D without drag
  *
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
- *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02, or for soft bodies
- *    and sheets with shear springs with drag/mass of at least 0.1/s, while no link is longer than twice its rest
- *    length; up to 0.5 for ropes with such drag;
- *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
+ *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02;
+ *  - with drag/mass of at least 0.1/s, up to 0.9 for soft bodies and sheets with shear springs while no link is longer
+ *    than twice its rest length, and up to 0.5 for ropes and other nets; half of this if links are tension-only;
+ *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links in
+ *    runs of up to a minute.
  * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
  * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered;
  * docs/games.md has a bound with them.
@@ -508,7 +509,7 @@ typedef enum spring_quantity {
     SPRING_FORCE     /**< [N] held forces of a scene with SPRING_SCENE_FORCES. A held force is 0 at first, and constant
                         until it is set again. Use held forces for wind, for example: compute them from the state once
                         per frame. A held force that opposes the displacement with a stiffness K, and is set every T
-                        seconds, adds a negative drag of K T/2; use a callback instead. Held forces are part of
+                        seconds, adds a negative drag of about K T/2; use a callback instead. Held forces are part of
                         snapshots. A failed call does not change them, even with SPRING_SCENE_NO_UNDO. The held force of
                         a pinned particle acts once the particle is freed. Setting held forces causes no force
                         evaluation */
@@ -772,7 +773,7 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
  * Moves a pinned particle: sets its velocity so that it reaches `target` after `duration`.
  *
  * The scene need not be editable. Link damping sees this velocity. The particle keeps moving at this velocity until the
- * velocity is changed.
+ * velocity is changed. Each step rounds its position, so after n steps it may be n/2 ulp from the target.
  *
  * @param[in] target    [axes] [m] position to reach; NULL: the particle stops
  * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(). If the target is
@@ -1119,11 +1120,12 @@ SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, doubl
  * Makes the particles and links of a triangle mesh, such as an index buffer for drawing. Vertices that are split at
  * seams, for texture coordinates or normals, are welded: they become one particle.
  *
- * In ascending order, a vertex is welded to the first particle within the distance `weld`, or becomes a particle itself.
- * A particle is at the position of its first vertex, and particles are numbered in the order of their first vertices.
- * Vertices without a triangle become particles, too. There is one link for each edge, from the particle with the lower
- * index, sorted by a, then by b. Its rest length is the distance of its ends and its stiffness is 1 N/m: scale it. For
- * a sheet of triangles, stiffness times 1.15 is about Young's modulus times the thickness.
+ * In ascending order, a vertex is welded to the first particle within the distance `weld`, or becomes a particle
+ * itself. A particle is at the position of its first vertex, and particles are numbered in the order of their first
+ * vertices. Vertices without a triangle become particles, too. There is one link for each edge, from the particle with
+ * the lower index, sorted by a, then by b. Its rest length is the distance of its ends and its stiffness is 1 N/m:
+ * scale it. For a sheet of equilateral triangles, stiffness times 1.15 is Young's modulus times the thickness. In a
+ * sheet of squares it depends on the direction: 1.3 if the diagonals alternate, and 0.4 to 2 if they are parallel.
  *
  *     for (size_t v = vertices; v-- > 0;)                                  // positions of the particles
  *         memcpy(&x[3 * particle_of[v]], &position[3 * v], 3 * sizeof *x);
@@ -1249,9 +1251,11 @@ SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *p
  *         with the same corners have
  * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
  *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
- *                squares with parallel diagonals, and about 4 times for irregular meshes. As there are no links over the
- *                outer edges, a square cantilever is softer than a beam, by up to 21 % (for irregular meshes from 21 %
- *                softer to 5 % stiffer). Prefer spring_bend_grid() for grids of squares (tests/scene/test_bend.c)
+ *                squares with parallel diagonals, and about 4 times for irregular meshes. Rectangles are up to 7 times
+ *                stiffer at a ratio of sides of 3. Some directions are softer, down to half of D. As there are no links
+ *                over the outer edges, a square cantilever is softer than a beam, by up to 21 % (for irregular meshes
+ *                from 21 % softer to 5 % stiffer). Prefer spring_bend_grid() for grids of squares
+ *                (tests/scene/test_bend.c)
  */
 SPRING_API spring_status spring_bend_mesh(size_t particles, const double *position, size_t triangles,
                                           const uint32_t *triangle, const uint8_t *pinned, double rigidity,

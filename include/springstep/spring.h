@@ -277,8 +277,8 @@ SPRING_API spring_status spring_follow(spring_state *s, const spring_params *p, 
 SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
 
 /**
- * Returns the stability limit of a method: for 0 < dt < limit, no solution of the unloaded spring grows faster than the
- * exact solution.
+ * Returns the stability limit of a method: for 0 < dt < limit, no solution of the unloaded spring grows. (Without
+ * stiffness, its velocity does not grow.)
  *
  * @return limit [s], accurate to 8 ulp. 0: never stable (Euler without damping). INFINITY: always stable (the exact
  *         solution; a spring without stiffness and damping; leapfrog and symplectic Euler without stiffness). NaN for

@@ -48,10 +48,11 @@ static double scene_rkn8_limit(const scene_bounds *b)
     return fmin(3.14 / spring_sqrt(b->stiffness), 40 / b->damping);
 }
 
-/* With heavy drag, the growth in backward drifts would exceed the decay in the others; see srkn6.h. */
+/* With drag, particles of different masses can grow from smaller steps than a mode alone; see srkn6.h. */
 static double scene_srkn6_limit(const scene_bounds *b)
 {
-    return fmin(9.07 / spring_sqrt(b->stiffness), 20 / b->damping);
+    const double root = spring_sqrt(b->stiffness);
+    return b->drag > 0 ? fmin(8 / root, 3 / b->damping) : 9.07 / root;
 }
 
 SPRING_TABLE const method_limits spring_method_limits[SPRING_METHOD_COUNT] = {

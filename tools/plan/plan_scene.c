@@ -284,8 +284,8 @@ double plan_fraction(const preset *scene, double duration, const char **what)
     const bool rope = links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
     if (what != NULL)
         *what = ratio >= damped     ? "damped links"
-                : drags && !rope    ? "a sheet or a block with drag"
-                : drags             ? "a rope with drag"
+                : drags && !rope    ? "a sheet or a block with drag (half, if links are tension-only)"
+                : drags             ? "a rope with drag (half, if links are tension-only)"
                 : duration > minute ? "a long run without damping"
                                     : "smooth motion without damping (0.25 if it is violent or long)";
     return ratio >= damped || (drags && !rope) ? 0.9 : duration > minute && !drags ? 0.25 : 0.5;

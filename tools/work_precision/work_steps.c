@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The energy that motion gains with steps of different fractions of the stable step: the evidence for the rules for
- * steps. Each scene is released at rest, and runs for a minute or longer.
+ * steps. Each scene is released at rest or thrown, and runs for a minute or longer.
  */
 #include "work_steps.h"
 
@@ -13,6 +13,7 @@
 enum {
     STRUCTURAL = SPRING_GRID_STRUCTURAL,
     SHEARED = STRUCTURAL | SPRING_GRID_SHEAR,
+    TENSION = SPRING_SCENE_TENSION_ONLY,
     MOST_PARTICLES = 128,
     ROOM = 4096
 };
@@ -24,26 +25,30 @@ typedef struct steps_motion {
     double ratio;                /* damping ratio of a link between two particles */
     double lean;                 /* how far the scene is released from hanging or standing straight; 1: level */
     double duration;             /* [s] */
+    double span;  /* distance of two ends that are held, divided by the length between them; 0: one end is held */
+    double speed; /* [m/s] at most, of each particle along each axis at the start */
 } steps_motion;
 
 static const double particle_mass = 0.03; /* [kg] */
 
 static const steps_motion motions[] = {
-    {"cloth", {10, 10, 1}, SHEARED, 0, 100, 0.1, 0, 1, 60},
-    {"soft body", {4, 4, 4}, SHEARED, 0, 20, 0.1, 0, 1, 60},
-    {"tension-only net", {10, 10, 1}, SHEARED, SPRING_SCENE_TENSION_ONLY, 100, 0.1, 0, 1, 60},
-    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0.1, 0, 1, 60},
-    {"tension-only rope", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0.1, 0, 1, 60},
-    {"rope with damped links", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0.02, 1, 60},
-    {"tension-only rope with damped links", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0, 0.02, 1, 60},
-    {"cloth with damped links", {10, 10, 1}, SHEARED, 0, 100, 0, 0.02, 1, 60},
-    {"small motion of a rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 0.1, 60},
-    {"small motion of a cloth", {10, 10, 1}, SHEARED, 0, 100, 0, 0, 0.1, 60},
-    {"small motion of a rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 0.1, 2000},
-    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 1, 60},
-    {"rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 1, 2000},
-    {"tension-only rope", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0, 0, 1, 60},
-    {"tension-only net", {10, 10, 1}, SHEARED, SPRING_SCENE_TENSION_ONLY, 100, 0, 0, 1, 60},
+    {"cloth", {10, 10, 1}, SHEARED, 0, 100, 0.1, 0, 1, 60, 0, 0},
+    {"soft body", {4, 4, 4}, SHEARED, 0, 20, 0.1, 0, 1, 60, 0, 0},
+    {"tension-only net", {10, 10, 1}, SHEARED, TENSION, 100, 0.1, 0, 1, 60, 0, 0},
+    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0.1, 0, 1, 60, 0, 0},
+    {"tension-only rope", {20, 1, 1}, STRUCTURAL, TENSION, 2000, 0.1, 0, 1, 60, 0, 0},
+    {"thrown tension-only net", {10, 10, 1}, SHEARED, TENSION, 6400, 0.1, 0, 1, 60, 1, 4},
+    {"thrown tension-only rope between two ends", {22, 1, 1}, STRUCTURAL, TENSION, 12800, 0.1, 0, 1, 60, 0.9, 4},
+    {"rope with damped links", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0.02, 1, 60, 0, 0},
+    {"tension-only rope with damped links", {20, 1, 1}, STRUCTURAL, TENSION, 2000, 0, 0.02, 1, 60, 0, 0},
+    {"cloth with damped links", {10, 10, 1}, SHEARED, 0, 100, 0, 0.02, 1, 60, 0, 0},
+    {"small motion of a rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 0.1, 60, 0, 0},
+    {"small motion of a cloth", {10, 10, 1}, SHEARED, 0, 100, 0, 0, 0.1, 60, 0, 0},
+    {"small motion of a rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 0.1, 2000, 0, 0},
+    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 1, 60, 0, 0},
+    {"rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 1, 2000, 0, 0},
+    {"tension-only rope", {20, 1, 1}, STRUCTURAL, TENSION, 2000, 0, 0, 1, 60, 0, 0},
+    {"tension-only net", {10, 10, 1}, SHEARED, TENSION, 100, 0, 0, 1, 60, 0, 0},
 };
 
 const char steps_columns[] = "problem motion drag_per_mass duration_s fraction energy_gain";
@@ -57,7 +62,7 @@ static double total_energy(const spring_scene *s)
 /* The largest gain of energy, relative to the largest kinetic energy of the first two seconds. */
 static double gain_of(const steps_motion *m, double fraction)
 {
-    static double position[MOST_PARTICLES][3];
+    static double position[MOST_PARTICLES][3], velocity[MOST_PARTICLES][3];
     static spring_link link[ROOM];
     static uint8_t pinned[MOST_PARTICLES];
     const spring_grid g = {.count = {m->count[0], m->count[1], m->count[2]},
@@ -65,12 +70,20 @@ static double gain_of(const steps_motion *m, double fraction)
                            .stiffness = m->stiffness,
                            .damping = m->ratio * sqrt(2 * m->stiffness * particle_mass),
                            .families = m->families,
-                           .pinned = SPRING_GRID_FIRST_X};
+                           .pinned = SPRING_GRID_FIRST_X | (m->span > 0 ? SPRING_GRID_LAST_X : 0)};
     size_t particles, links, bytes;
     spring_scene *s = NULL;
     if (spring_grid_size(&g, &particles, &links) != SPRING_OK || particles > MOST_PARTICLES || links > ROOM)
         cli_fail(CLI_FAILED, "the grid of %s is too large", m->name);
     spring_grid_fill(&g, position[0], pinned, link);
+    const double middle = (m->count[0] - 1) * g.spacing / 2, slope = sqrt(1 - m->span * m->span);
+    for (size_t i = 0; i < 3 * particles; i++) /* in all directions, without a pattern */
+        velocity[0][i] = pinned[i / 3] ? 0 : m->speed * sin(1.7 * (double)i + 0.01 * (double)(i * i));
+    for (size_t i = 0; i < particles && m->span > 0; i++) { /* a level V of two straight halves */
+        const double x = position[i][0];
+        position[i][2] = slope * (x < middle ? x : 2 * middle - x);
+        position[i][0] = m->span * x;
+    }
     for (size_t i = 0; i < particles; i++) { /* along x, turned down to a part of its angle */
         const double angle = acos(0.0) * (1 - m->lean), x = position[i][0], y = position[i][1];
         position[i][0] = x * cos(angle) + y * sin(angle);
@@ -80,6 +93,7 @@ static double gain_of(const steps_motion *m, double fraction)
                                   .particles = particles,
                                   .links = links,
                                   .position = position[0],
+                                  .velocity = velocity[0],
                                   .mass_all = particle_mass,
                                   .pinned = pinned,
                                   .link = link,
@@ -100,7 +114,7 @@ static double gain_of(const steps_motion *m, double fraction)
         gain = fmax(gain, total_energy(s) - before);
     }
     free(s);
-    return gain / kinetic;
+    return gain < INFINITY ? gain / kinetic : INFINITY; /* the kinetic energy may have overflowed */
 }
 
 void steps_write(cli_table *table, bool quick)
