@@ -343,7 +343,8 @@ export declare class Scene {
 
     /**
      * Takes the steps that are due after `elapsed` more seconds, and returns their number: by default with leapfrog, and
-     * with 1/60 s divided into equal steps of at most 1/240 s and at most half of the stable step.
+     * with 1/60 s divided into equal steps of at most 1/240 s and at most half of the stable step, or a quarter with
+     * `tensionOnly`.
      */
     frame(elapsed: number, options?: FrameOptions & { method?: Method; dt?: number }): number;
 

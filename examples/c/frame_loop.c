@@ -32,7 +32,7 @@ static spring_status advance_frame(spring_scene *s, spring_clock *clock, double 
     const uint64_t n = spring_clock_tick(clock, frame_time, dt, 64, NULL); /* at most 64 steps in a frame */
     if (n == 0)
         return SPRING_OK;
-    /* `time`: from the end of the last frame's steps to the render time. In skipped time, the scene moves with the hand. */
+    /* `time`: from the end of the last frame's steps to the render time, without skipped time */
     const double steps = (double)n * dt, time = steps + clock->pending; /* [s] */
     if (clock->skipped > 0)
         move_along(s, hand, clock->skipped / (clock->skipped + time));
