@@ -438,7 +438,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
- * growth.
+ * growth. Without drag, choose dt < 3.14/sqrt(L) for long runs of scenes with many modes.
  *
  * The sums are stored in the scene and computed again after a change of links, pins or masses, in time proportional to
  * particles + links.
