@@ -779,6 +779,40 @@ static void lands_with_friction(void)
     }
 }
 
+/* A damped dumbbell is thrown on a rough floor in any direction. The reaction of its damper to its rotation is not a load
+   that friction of the kick may use. */
+static void lands_while_it_turns(void)
+{
+    static const double stiffness = 640, mass = 0.05, rest = 0.15, speed = 5;
+    for (int i = 0; i < 240; i++) {
+        const double angle = random_uniform(-1.5, 1.5), ratio = random_log(1, 1e4), turned = 0.15; /* [rad] in a step */
+        const double dt = turned * rest / (speed * sqrt(2));
+        const double position[] = {0, 0.16, 0, rest * sin(angle), 0.16 + rest * cos(angle), 0},
+                     velocity[] = {speed, -speed, 0, speed, -speed, 0};
+        const spring_link link = {0, 1, rest, stiffness, ratio * sqrt(2 * stiffness * mass), 0};
+        const spring_scene_def def = {.particles = 2,
+                                      .links = 1,
+                                      .position = position,
+                                      .velocity = velocity,
+                                      .mass_all = mass,
+                                      .link = &link,
+                                      .colliders = 1,
+                                      .gravity = {0, -9.81, 0}};
+        const spring_collider floor = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = random_uniform(0, 1)};
+        spring_scene *s = scene_of(&def);
+        spring_scene_set_colliders(s, &floor, 1);
+        CHECK(dt < 0.3 * spring_scene_stable_step(s, SPRING_LEAPFROG), "stable");
+        const double kinetic = spring_scene_energy(s).kinetic;
+        for (double before = total_energy(s), t = 0; t < 0.3; t += dt) {
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
+            const double after = total_energy(s);
+            CHECK_BELOW(fmax(after - before, 0), turned * turned * kinetic, "the order of the error of the turning term");
+            before = after;
+        }
+        free(s);
+    }
+}
+
 /* A turned block that falls on a plane with restitution: impacts add no energy, however stiff the dampers. */
 static void impacts_add_no_energy(void)
 {
@@ -910,6 +944,7 @@ int main(void)
         {"slides down a slope", slides_down_a_slope},
         {"lands with friction", lands_with_friction},
         {"stops by friction", stops_by_friction},
+        {"lands while it turns", lands_while_it_turns},
         {"impacts", impacts_add_no_energy},
     };
     return RUN_TESTS("scene_exponential_kick", tests);
