@@ -806,7 +806,8 @@ static void lands_while_it_turns(void)
         for (double before = total_energy(s), t = 0; t < 0.3; t += dt) {
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
             const double after = total_energy(s);
-            CHECK_BELOW(fmax(after - before, 0), turned * turned * kinetic, "the order of the error of the turning term");
+            CHECK_BELOW(fmax(after - before, 0), turned * turned * kinetic,
+                        "the order of the error of the turning term");
             before = after;
         }
         free(s);
