@@ -62,7 +62,7 @@ int main(void)
     if (memory == NULL)
         return 1;
     must(spring_scene_init(memory, bytes, &def, &curtain));
-    if (!(frame / STEPS < 0.5 * spring_scene_stable_step(curtain, SPRING_LEAPFROG)))
+    if (!(frame / STEPS < 0.45 * spring_scene_stable_step(curtain, SPRING_LEAPFROG)))
         return 1;
 
     size_t torn_links = 0;

@@ -108,7 +108,7 @@ SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_me
  * @param[out] failed  [count] status of spring i: SPRING_OK, which is 0, if it advanced; SPRING_EINVAL if its state or
  *                     parameters are invalid, and SPRING_ENONFINITE if it would have become non-finite. It must not
  *                     overlap another array. Not written if nothing changed because of an error of the whole batch.
- * @return as spring_batch_advance(); SPRING_EINVAL also if failed is NULL
+ * @return as spring_batch_advance(); SPRING_EINVAL also if failed is NULL or overlaps another array
  */
 SPRING_API spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double dt, uint64_t n,
                                                      uint8_t *failed);

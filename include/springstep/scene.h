@@ -328,8 +328,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * is the damping matrix of the links in their directions there, divided by the masses, and p(z) approximates (1 -
  * e^-z)/z by a Chebyshev series. A correction for the rotation of links during the step is included. Leapfrog is
  * therefore stable for dt < 2/sqrt(L) at any link damping, and a link that creeps does so at the rate
- * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step, and for dt
- * G > 10000 with friction on curved colliders. The step has order 2 for dt G up to about 3. Beyond, the order falls to
+ * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step (in impacts
+ * of links that turn by 0.15 rad in a step, up to a few percent of the kinetic energy), and for dt G > 10000 with
+ * friction. The step has order 2 for dt G up to about 3. Beyond, the order falls to
  * 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about 1.6
  * sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
  * called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series
@@ -337,7 +338,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
-  * with its own sum G, but at most 1. Such a link relaxes within about 30000 mass/(stiffness dt^2) steps. If colliders
+ * with its own sum G, but at most 1. Such a link relaxes within about 30000 mass/(stiffness dt^2) steps. If colliders
  * would pull particles during a kick, the kick is repeated without them.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
@@ -422,9 +423,10 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
  *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02;
  *  - with drag/mass of at least 0.1/s, up to 0.9 for soft bodies and sheets with shear springs while no link is longer
- *    than twice its rest length, and up to 0.5 for ropes and other nets; half of this if links are tension-only;
- *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links in
- *    runs of up to a minute.
+ *    than twice its rest length, and up to 0.5 for ropes and other nets;
+ *  - half of these if links are tension-only;
+ *  - without damping, 0.5 for smooth motion, 0.25 for violent motion (0.06 for more than a minute if links stretch by
+ *    more than a quarter), and 0.1 for tension-only links in runs of up to a minute.
  * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
  * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered;
  * docs/games.md has a bound with them.
@@ -815,9 +817,10 @@ SPRING_API spring_scene_info spring_scene_describe(const spring_scene *s);
  * The state consists of everything that a run depends on besides the definition: positions, velocities, the time and
  * the last time step, kept forces (see spring_scene_advance()), held forces, gravity, colliders, the time since they
  * were set, and the colliders that particles touch. The state of an editable scene also has all masses, pins and
- * coefficients of links and weighted links. Saving changes nothing. Equal states of the same kind of scene have equal
- * bytes, so saved states can be compared. (Fields of colliders that their shape does not use are saved as they were
- * set.)
+ * coefficients of links and weighted links. Saving changes nothing. A call of spring_scene_advance() that fails may
+ * drop the forces that are kept, which the next step then computes again. Otherwise, equal states of the same kind of
+ * scene have equal bytes, so saved states can be compared. (Fields of colliders that their shape does not use are saved
+ * as they were set.)
  *
  * @param[out]    out    the state, at any address; NULL: only *bytes is written
  * @param[in,out] bytes  size of out [bytes]; afterwards the size of the state, which may be another one after the next

@@ -18,10 +18,15 @@ static bool is_shared(const spring_batch *b, uint32_t bit)
     return (b->shared & bit) != 0;
 }
 
-static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_count)
+static bool bytes_overlap(const void *a, size_t a_bytes, const void *b, size_t b_bytes)
 {
     const uintptr_t p = (uintptr_t)a, q = (uintptr_t)b;
-    return p < q ? q - p < a_count * sizeof(scalar) : p - q < b_count * sizeof(scalar);
+    return p < q ? q - p < a_bytes : p - q < b_bytes;
+}
+
+static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_count)
+{
+    return bytes_overlap(a, a_count * sizeof(scalar), b, b_count * sizeof(scalar));
 }
 
 /* Whether an array of parameters is NULL or does not overlap the state. */
@@ -50,6 +55,18 @@ static bool batch_valid(const spring_batch *b)
            leaves_state_alone(b, b->accel, SPRING_SHARED_ACCEL) &&
            shared_valid(b, b->omega2, SPRING_SHARED_OMEGA2, 0) && shared_valid(b, b->gamma, SPRING_SHARED_GAMMA, 0) &&
            shared_valid(b, b->accel, SPRING_SHARED_ACCEL, -(scalar)INFINITY);
+}
+
+/* Whether the marks overlap an array of a valid batch. */
+static bool touches_batch(const spring_batch *b, const uint8_t *failed)
+{
+    const scalar *const array[] = {b->x, b->v, b->omega2, b->gamma, b->accel};
+    static const uint32_t bit[] = {0, 0, SPRING_SHARED_OMEGA2, SPRING_SHARED_GAMMA, SPRING_SHARED_ACCEL};
+    for (size_t j = 0; j < sizeof array / sizeof array[0]; j++)
+        if (array[j] != NULL &&
+            bytes_overlap(array[j], (is_shared(b, bit[j]) ? 1 : b->count) * sizeof(scalar), failed, b->count))
+            return true;
+    return false;
 }
 
 static scalar element(const scalar *p, size_t i, bool shared)
@@ -311,6 +328,8 @@ spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m
                                           uint8_t *failed)
 {
     spring_status status = failed != NULL ? check_batch(b, m, step) : SPRING_EINVAL;
+    if (status == SPRING_OK && touches_batch(b, failed))
+        status = SPRING_EINVAL;
     const scalar dt = (scalar)step;
     if (status != SPRING_OK || b->count == 0)
         return status;

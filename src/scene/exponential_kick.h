@@ -409,8 +409,13 @@ SPRING_NOINLINE void damp_bounces(const scene_step *s)
                 const double removed = (1 - (double)remaining[i]) * leaving;
                 if (!(leaving > 0))
                     continue;
-                store_vector(s->whole.v + i, stride, axes, vector_plus(v, -removed, n));
-                record_change(s, i, k, s->whole.x, vector_times(removed, n));
+                /* the friction of a sliding particle decreases with the load */
+                const vector3 along = vector_plus(u, -leaving, n);
+                const double speed = spring_sqrt(along.x * along.x + along.y * along.y + along.z * along.z);
+                const double returned = speed > 0 ? surface[j].friction * removed / speed : 0;
+                const vector3 change = vector_plus(vector_times(removed, n), -returned, along);
+                store_vector(s->whole.v + i, stride, axes, vector_plus(v, -1, change));
+                record_change(s, i, k, s->whole.x, change);
             }
         }
     }

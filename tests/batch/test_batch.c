@@ -498,6 +498,13 @@ static void bad_batches(void)
                {{SIZE_MAX / sizeof(scalar) + 19, x, v, m0, m0, m0, 0}, "more bytes than can be counted"}};
     CHECK(ask(&good, SPRING_LEAPFROG, step) == SPRING_OK, "good input");
     CHECK(spring_batch_advance_marked(&good, SPRING_LEAPFROG, step, 3, NULL) == SPRING_EINVAL, "no marks");
+    const scalar *const read_or_written[] = {good.x, good.v, good.omega2, good.gamma, good.accel};
+    for (size_t i = 0; i < sizeof read_or_written / sizeof read_or_written[0]; i++)
+        for (ptrdiff_t at = -9; at < (ptrdiff_t)(10 * sizeof(scalar)); at += 11)
+            if (read_or_written[i] != NULL)
+                CHECK(spring_batch_advance_marked(&good, SPRING_LEAPFROG, step, 3,
+                                                  (uint8_t *)(uintptr_t)read_or_written[i] + at) == SPRING_EINVAL,
+                      "marks over another array");
     refuse(NULL, SPRING_LEAPFROG, step, "no batch");
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         refuse(&bad[i].b, SPRING_LEAPFROG, step, bad[i].why);

@@ -387,6 +387,8 @@ static void soften(void)
     static model m, before;
     for (unsigned number = 0; number < 300; number++) {
         build_wild(&m, number);
+        for (size_t i = 0; i < m.def.particles && (m.def.flags & SPRING_SCENE_EDITABLE) == 0; i++)
+            m.mass[i] = pinned_in(&m.def, i) ? -1 : m.mass[i]; /* which is not used */
         before = m;
         spring_scene *s = scene_of(&m.def);
         const double stable = spring_scene_stable_step(s, SPRING_LEAPFROG);

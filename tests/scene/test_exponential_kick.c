@@ -779,6 +779,39 @@ static void lands_with_friction(void)
     }
 }
 
+/* Cubes with any damping are thrown on a floor, and tumble. If colliders pulled particles in the kick, friction of the
+   others would exceed its limit by ten times more. */
+static void tumbles(void)
+{
+    static model m;
+    const double mu = 0.6, up[] = {0, 0, 1}, speed = 6;
+    double worst = 0; /* [N s] excess of friction in a step */
+    for (int i = 0; i < 300; i++) {
+        spring_scene *s = block_of(&m, 2, random_log(0.3, 300), mu, up);
+        const double angle = random_uniform(0, 6), v[] = {random_uniform(0, speed), 0, -3};
+        for (size_t p = 0; p < m.def.particles; p++) {
+            double *const x = &m.position[3 * p];
+            const double x0 = x[0], z0 = x[2];
+            x[0] = cos(angle) * x0 - sin(angle) * z0;
+            x[2] = sin(angle) * x0 + cos(angle) * z0 + 0.3;
+            memcpy(&m.velocity[3 * p], v, sizeof v);
+        }
+        spring_scene_set(s, SPRING_POSITION, m.position, 0, 0, m.def.particles);
+        spring_scene_set(s, SPRING_VELOCITY, m.velocity, 0, 0, m.def.particles);
+        const double dt = random_uniform(0.3, 0.9) * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        for (double t = 0; t < 2; t += dt) {
+            spring_impulse j;
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "stable");
+            spring_scene_impulses(s, &j, 0, 1);
+            worst = fmax(worst, hypot(j.linear[0], j.linear[1]) - mu * fabs(j.linear[2]));
+        }
+        free(s);
+    }
+    printf("# friction exceeds its limit by up to %.2g N s in a step\n", worst);
+    CHECK_BELOW(worst, 0.004 * speed * (double)m.def.particles * m.def.mass_all,
+                "of the momentum; particles that stop in the step have other limits before");
+}
+
 /* A damped dumbbell is thrown on a rough floor in any direction. The reaction of its damper to its rotation is not a load
    that friction of the kick may use. */
 static void lands_while_it_turns(void)
@@ -945,6 +978,7 @@ int main(void)
         {"slides down a slope", slides_down_a_slope},
         {"lands with friction", lands_with_friction},
         {"stops by friction", stops_by_friction},
+        {"tumbles", tumbles},
         {"lands while it turns", lands_while_it_turns},
         {"impacts", impacts_add_no_energy},
     };

@@ -283,7 +283,7 @@ double plan_fraction(const preset *scene, double duration, const char **what)
     }
     const bool rope = links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
     if (what != NULL)
-        *what = ratio >= damped     ? "damped links"
+        *what = ratio >= damped     ? "damped links (half, if they are tension-only)"
                 : drags && !rope    ? "a sheet or a block with drag (half, if links are tension-only)"
                 : drags             ? "a rope with drag (half, if links are tension-only)"
                 : duration > minute ? "a long run without damping"

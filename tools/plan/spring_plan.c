@@ -96,7 +96,7 @@ static const cli_program program = {
                "scene, and the steps for 1/60 s, in double and single precision: 0.9 if the damping ratio of links is\n"
                "at least 0.02, and for sheets and blocks with a drag/mass of at least 0.1/s, while no link is longer\n"
                "than twice its rest length; otherwise 0.5, and 0.25 for more than a minute without drag. Take half\n"
-               "of it if links without damping are tension-only, as with spring-scene --tension-only. A line\n"
+               "of it if links are tension-only, as with spring-scene --tension-only. A line\n"
                "\"limit:\" warns if the recommended step is longer than the stable step: the error is measured in a\n"
                "single run, and longer runs may be unstable.\n"
                "spring-work --problem steps measures what longer steps cost.\n\n"
