@@ -877,6 +877,35 @@ static void impacts_add_no_energy(void)
         }
 }
 
+/* Where damping reduces the speed after a bounce, the load of the impact is smaller, and so is its friction. */
+static void bounces_with_friction(void)
+{
+    static model m;
+    const double mu = 0.3, up[] = {0, 0, 1}, velocity[] = {5, 1, -3}, dt = 0.001;
+    static const double damping[] = {3, 50, 1e3, 1e5}, restitution[] = {0.2, 0.5, 1};
+    for (int i = 0; i < 12; i++) {
+        spring_scene *s = block_of(&m, 2, damping[i / 3], mu, up);
+        const spring_collider plane = {
+            .shape = SPRING_PLANE, .axis = {{0, 0, 1}}, .friction = mu, .restitution = restitution[i % 3]};
+        spring_scene_set_colliders(s, &plane, 1);
+        for (size_t p = 0; p < m.def.particles; p++) {
+            m.position[3 * p + 2] += 0.05;
+            memcpy(&m.velocity[3 * p], velocity, sizeof velocity);
+        }
+        spring_scene_set(s, SPRING_POSITION, m.position, 0, 0, m.def.particles);
+        spring_scene_set(s, SPRING_VELOCITY, m.velocity, 0, 0, m.def.particles);
+        spring_impulse j = {.linear = {0}};
+        for (int step = 0; step < 100 && j.linear[2] == 0; step++) {
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "stable");
+            spring_scene_impulses(s, &j, 0, 1);
+        }
+        const double load = -j.linear[2];
+        CHECK(load > 1.4 * (double)m.def.particles * m.def.mass_all, "the particles at the bottom stop, at least");
+        CHECK_CLOSE(hypot(j.linear[0], j.linear[1]), mu * load, 1000 * EPS, "all of them slide");
+        free(s);
+    }
+}
+
 /* Two ropes at infinite distance. They form a band, with a slot without a link between them. */
 static void infinite_distance(void)
 {
@@ -981,6 +1010,7 @@ int main(void)
         {"tumbles", tumbles},
         {"lands while it turns", lands_while_it_turns},
         {"impacts", impacts_add_no_energy},
+        {"bounces with friction", bounces_with_friction},
     };
     return RUN_TESTS("scene_exponential_kick", tests);
 }
