@@ -269,7 +269,7 @@ SPRING_NOINLINE void add_friction(scene_step *s, const pressed_list *pressed, co
     scene_links links = *s->links;
     bool known = false; /* the damping forces */
     links.terms = DAMPING_TERM;
-    links.turning_weight = (scalar)-0.5; /* as in the residual */
+    links.turning_weight = s->links->turning_time > 0 ? (scalar)-0.5 : 0; /* as in the residual */
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const p = &pressed->list[j];
         const size_t i = p->particle;
