@@ -343,9 +343,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
- * of the distance for dt drag/mass = 1, and 2e-6 for dt drag/mass = 4. Forces must be smooth: a force that starts
- * suddenly reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in spring_scene_stable_step()) an
- * oscillator loses 6e-11 of its energy per period.
+ * of the stopping distance for dt drag/mass = 1, and 2e-6 of it for dt drag/mass = 4. Forces must be smooth: a force
+ * that starts suddenly reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in
+ * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
  * with three to six significant digits: without drag the energy error of smooth motion stays bounded. For one
