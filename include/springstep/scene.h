@@ -328,11 +328,11 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * is the damping matrix of the links in their directions there, divided by the masses, and p(z) approximates (1 -
  * e^-z)/z by a Chebyshev series. A correction for the rotation of links during the step is included. Leapfrog is
  * therefore stable for dt < 2/sqrt(L) at any link damping, and a link that creeps does so at the rate
- * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step (in impacts
- * of links that turn by 0.15 rad in a step, up to a few percent of the kinetic energy), and for dt G > 10000 with
- * friction. The step has order 2 for dt G up to about 3. Beyond, the order falls to
- * 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about 1.6
- * sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
+ * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step, and for dt
+ * G > 10000 with friction. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of the
+ * kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order falls
+ * to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about
+ * 1.6 sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
  * called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series
  * is computed twice. A negative dt always uses explicit damping.
  *
@@ -1128,7 +1128,7 @@ SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, doubl
  * vertices. Vertices without a triangle become particles, too. There is one link for each edge, from the particle with
  * the lower index, sorted by a, then by b. Its rest length is the distance of its ends and its stiffness is 1 N/m:
  * scale it. For a sheet of equilateral triangles, stiffness times 1.15 is Young's modulus times the thickness. In a
- * sheet of squares it depends on the direction: 1.3 if the diagonals alternate, and 0.4 to 2 if they are parallel.
+ * sheet of squares, the factor depends on the direction, strongly if all diagonals are parallel.
  *
  *     for (size_t v = vertices; v-- > 0;)                                  // positions of the particles
  *         memcpy(&x[3 * particle_of[v]], &position[3 * v], 3 * sizeof *x);
@@ -1254,11 +1254,10 @@ SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *p
  *         with the same corners have
  * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
  *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
- *                squares with parallel diagonals, and about 4 times for irregular meshes. Rectangles are up to 7 times
- *                stiffer at a ratio of sides of 3. Some directions are softer, down to half of D. As there are no links
- *                over the outer edges, a square cantilever is softer than a beam, by up to 21 % (for irregular meshes
- *                from 21 % softer to 5 % stiffer). Prefer spring_bend_grid() for grids of squares
- *                (tests/scene/test_bend.c)
+ *                squares with parallel diagonals, and about 4 times for irregular meshes. Long rectangles are stiffer
+ *                still, and some directions are softer. As there are no links over the outer edges, a square cantilever
+ *                is softer than a beam, by up to 21 % (for irregular meshes from 21 % softer to 5 % stiffer). Prefer
+ *                spring_bend_grid() for grids of squares (tests/scene/test_bend.c)
  */
 SPRING_API spring_status spring_bend_mesh(size_t particles, const double *position, size_t triangles,
                                           const uint32_t *triangle, const uint8_t *pinned, double rigidity,

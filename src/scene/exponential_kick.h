@@ -410,10 +410,10 @@ SPRING_NOINLINE void damp_bounces(const scene_step *s)
                 if (!(leaving > 0))
                     continue;
                 /* the friction of a sliding particle decreases with the load */
-                const vector3 along = vector_plus(u, -leaving, n);
-                const double speed = spring_sqrt(along.x * along.x + along.y * along.y + along.z * along.z);
+                const vector3 sliding = vector_plus(u, -leaving, n);
+                const double speed = spring_sqrt(sliding.x * sliding.x + sliding.y * sliding.y + sliding.z * sliding.z);
                 const double returned = speed > 0 ? surface[j].friction * removed / speed : 0;
-                const vector3 change = vector_plus(vector_times(removed, n), -returned, along);
+                const vector3 change = vector_plus(vector_times(removed, n), -returned, sliding);
                 store_vector(s->whole.v + i, stride, axes, vector_plus(v, -1, change));
                 record_change(s, i, k, s->whole.x, change);
             }

@@ -63,6 +63,7 @@ static allowance allowance_of(const spring_scene_def *def, size_t precision, con
     const double epsilon = precision == sizeof(float) ? 0x1p-23 : 0x1p-52;
     const double rounding = (sums->links[i - first] + 8.0) * epsilon, sum = sums->stiffness[i - first];
     const double left = most_rate2 * mass_of(def, i) - sums->weighted[i - first] / (1 - rounding);
+    /* the sum of a pinned particle is 0, and its mass may be anything */
     return (allowance){left, sum > 0 && sum > left * (1 - rounding) ? left / sum * (1 - rounding) : 1};
 }
 

@@ -779,8 +779,8 @@ static void lands_with_friction(void)
     }
 }
 
-/* Cubes with any damping are thrown on a floor, and tumble. If colliders pulled particles in the kick, friction of the
-   others would exceed its limit by ten times more. */
+/* Cubes with light to heavy damping are thrown on a floor, and tumble. Friction that stops a particle within a step may
+   exceed its limit in this step. If colliders pulled particles in the kick, the excess would be ten times as large. */
 static void tumbles(void)
 {
     static model m;
@@ -808,8 +808,7 @@ static void tumbles(void)
         free(s);
     }
     printf("# friction exceeds its limit by up to %.2g N s in a step\n", worst);
-    CHECK_BELOW(worst, 0.004 * speed * (double)m.def.particles * m.def.mass_all,
-                "of the momentum; particles that stop in the step have other limits before");
+    CHECK_BELOW(worst, 0.004 * speed * (double)m.def.particles * m.def.mass_all, "a small part of the momentum");
 }
 
 /* A damped dumbbell is thrown on a rough floor in any direction. The reaction of its damper to its rotation is not a load
@@ -840,7 +839,7 @@ static void lands_while_it_turns(void)
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
             const double after = total_energy(s);
             CHECK_BELOW(fmax(after - before, 0), turned * turned * kinetic,
-                        "the order of the error of the turning term");
+                        "links turn by this angle: the neglected terms are of its square");
             before = after;
         }
         free(s);
