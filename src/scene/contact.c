@@ -22,8 +22,8 @@
  *              is lambda n, with the lambda for which the path ends on the surface. Late (in the second half of the step,
  *              at a second contact of the step, or after item 1): the path is projected to the tangent plane, and w
  *              loses its component into the collider.
- *           5. Colliders are tested again with a path that others changed. A particle that is still inside at the end
- *              (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
+ *           5. After a contact, the other colliders are tested with the changed path. A particle that is still inside at
+ *              the end (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
  *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
@@ -578,12 +578,12 @@ void spring_contact_record(const contact_setting *s, const contact_particle *p, 
 
 /* --------------------------------------------------------------------------------------------------------- friction */
 
-/* Sliding over the rest of a step. */
+/* Sliding over the rest of a step. kick: [m/s] the velocity that the last kick, by A/2 with friction F/2, turns into the
+   velocity at the end */
 typedef struct slide_result {
     bool sticks;  /* at the end */
     vector3 mean; /* [m/s] velocity */
-    vector3
-        kick; /* [m/s] velocity before the last kick, A/2 with friction F/2, that results in the velocity at the end */
+    vector3 kick;
 } slide_result;
 
 /* u' = A - F u/|u| from u0 for a unit of time, with the stop at u = 0 and what follows. On a line it is exact. Where
