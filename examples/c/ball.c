@@ -10,8 +10,9 @@
  *     V += J/M + g T        with the impulse J of a call that advances the scene by T
  *
  * Its `acceleration` in the next call is that of the last one, g + J/(M T), extrapolated by half of the change of J/(M T)
- * from one call to the next. This coupling is explicit. With damped links it is stable for omega T <= 0.6, where
- * omega^2 = (stiffness that the ball feels)/M. While the hand holds the ball, its velocity is the hand's.
+ * from one call to the next. For a ball on a single spring, this is stable for omega T <= 0.6, where omega^2 =
+ * (stiffness that the ball feels)/M. docs/games.md has further conditions. While the hand holds the ball, its velocity
+ * is the hand's.
  */
 #include <springstep/scene.h>
 #include <math.h>

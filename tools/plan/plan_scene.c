@@ -283,8 +283,9 @@ double plan_fraction(const preset *scene, double duration, const char **what)
     }
     const bool rope = links < lone * (double)d->particles, drags = d->drag >= dragged * heaviest;
     if (what != NULL)
-        *what = ratio >= damped     ? "damped links (half, if they are tension-only)"
-                : drags && !rope    ? "a sheet or a block with drag (half, if links are tension-only)"
+        *what = ratio >= damped ? "damped links (half, if they are tension-only or stretch to twice their length)"
+                : drags && !rope
+                    ? "a sheet or a block with drag (half, if links are tension-only or stretch to twice their length)"
                 : drags             ? "a rope with drag (half, if links are tension-only)"
                 : duration > minute ? "a long run without damping"
                                     : "smooth motion without damping (0.25 if it is violent or long)";
