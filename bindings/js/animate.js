@@ -2,7 +2,7 @@
 // @ts-self-types="./animate.d.ts"
 // One loop of frames for any number of springs. It runs while one of them moves.
 import { check } from "./options.js";
-import { watch } from "./watch.js";
+import { moves, watch } from "./watch.js";
 
 const nextFrame = (frame) =>
     globalThis.requestAnimationFrame
@@ -25,7 +25,7 @@ export function animator({
 } = {}) {
     check(typeof request === "function", "request", "a function", request, TypeError);
     check(now === null || typeof now === "function", "now", "a function or null", now, TypeError);
-    const entries = new WeakMap(); // { spring, draws, runs, time, stale } of a spring
+    const entries = new WeakMap(); // { spring, draws, runs, time, stale, failure } of a spring
     const moving = new Set();
     let requested = false;
 
@@ -37,6 +37,7 @@ export function animator({
     function wake(entry) {
         entry.stale = true;
         if (moving.has(entry)) return;
+        entry.failure = null;
         entry.time = now ? now() : null; // of the start, so that no frame is too long
         moving.add(entry);
         schedule();
@@ -46,6 +47,7 @@ export function animator({
         requested = false;
         const reduced = isReduced();
         for (const entry of [...moving]) {
+            if (!moving.has(entry)) continue; // a callback of another spring has stopped it
             // The time of a frame may be earlier than that of the event that started the motion.
             const dt = Math.max(0, time - (entry.time ?? time)) / 1000;
             entry.time = Math.max(time, entry.time ?? time);
@@ -58,13 +60,15 @@ export function animator({
     function advance(entry, dt, reduced) {
         const { spring, draws } = entry;
         entry.stale = false;
+        let failure = null; // message of a value that stays where it is, which would fail in each frame; "": of onRest()
         try {
             if (reduced && !entry.runs) spring.finish();
             else spring.step(dt);
         } catch (error) {
-            report(error);
-            return false;
+            failure = error instanceof RangeError ? error.message : "";
+            if (!failure || failure !== entry.failure) report(error);
         }
+        entry.failure = failure;
         const { value } = spring;
         for (const { draw } of draws)
             try {
@@ -73,8 +77,7 @@ export function animator({
                 report(error);
             }
         // The callbacks may have written to the arrays of Springs.
-        if (typeof spring.settled === "function") return spring.step(0) > 0;
-        return entry.stale || !spring.settled;
+        return spring[moves]?.() ?? (entry.stale || (failure === null && !spring.settled));
     }
 
     return function animate(spring, draw, { reducedMotion = "jump", ...more } = {}) {
@@ -85,7 +88,7 @@ export function animator({
         check(known, "reducedMotion", '"jump" or "run"', reducedMotion, TypeError);
         let entry = entries.get(spring);
         if (!entry) {
-            entry = { spring, draws: new Set(), runs: false, time: null, stale: false };
+            entry = { spring, draws: new Set(), runs: false, time: null, stale: false, failure: null };
             watch(spring, () => wake(entry));
             entries.set(spring, entry);
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // @ts-self-types="./css.d.ts"
 // A spring as an easing of CSS: linear() through points of the exact solution.
-import { max, min, sqrt } from "./elementary.js";
+import { abs, max, min, sqrt } from "./elementary.js";
 import { checkFinite, settings } from "./options.js";
 import { restTime } from "./settling.js";
 
@@ -14,6 +14,10 @@ export function linear(options = {}, velocity = 0) {
     const seconds = restTime(p, -1, velocity, 1e-3, 3e-3 * sqrt(p.omega2));
     if (!(seconds > 0 && seconds < 1e6)) throw new RangeError("the spring does not settle");
     const valueAt = (i) => 1 + p.after((i / cells) * seconds, -1, velocity)[0];
+    // Within a cell an easing is straight. Only extreme motions bend there.
+    for (let i = 0; i < cells; i++)
+        if (abs(valueAt(i + 0.5) - (valueAt(i) + valueAt(i + 1)) / 2) > 0.05)
+            throw new RangeError("the motion is too fast for an easing of its duration");
     const points = ["0"];
     // From each point on, the longest line that stays within the tolerance. The slopes of such lines are an interval.
     for (let from = 0, start = 0; from < cells;) {

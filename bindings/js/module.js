@@ -62,7 +62,8 @@ export function withForce(callback, call) {
 }
 
 // Views are made where they are used, because they are lost when memory grows.
-const view = (Type) => (pointer, count) => new Type(calls.memory.buffer, pointer, count);
+// Functions of the module return pointers above 2 GiB as negative numbers.
+const view = (Type) => (pointer, count) => new Type(calls.memory.buffer, pointer >>> 0, count);
 export const memory = {
     float64: view(Float64Array),
     float32: view(Float32Array),
@@ -83,7 +84,7 @@ export function borrowed(use) {
     const taken = [];
     try {
         return use((size) => {
-            const pointer = size < 2 ** 32 ? malloc(Math.max(size, 1)) >>> 0 : 0;
+            const pointer = size < 2 ** 32 ? malloc(Math.max(size, 1)) : 0;
             if (pointer === 0) throw new NoMemory(size);
             taken.push(pointer);
             return pointer;

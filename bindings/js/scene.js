@@ -91,7 +91,7 @@ export class Scene {
     }
 
     frame(...values) {
-        if (typeof values[0] === "number") {
+        if (typeof values[0] !== "string" || typeof (values[1] ?? {}) === "object") {
             const [elapsed, { method = "leapfrog", dt = this.#usualStep(method), ...options } = {}] = values;
             return this.#frame(method, dt, elapsed, options);
         }
@@ -117,6 +117,7 @@ export class Scene {
         checkKnown(options, ["mostSteps", "move"]);
         const { mostSteps = Math.max(1, Math.floor(0.25 / dt)), move = null } = options;
         const few = Number.isInteger(mostSteps) && mostSteps >= 1 && mostSteps < 2 ** 32;
+        if (options.mostSteps === undefined) check(few, "dt", "at least 1e-10 without mostSteps", dt);
         check(few, "mostSteps", "an integer >= 1 and < 2^32", mostSteps);
         check(move === null || typeof move === "function", "move", "a function or null", move, TypeError);
         if (this.#moving) throw new TypeError("move must not call frame() of its own scene");
@@ -124,7 +125,7 @@ export class Scene {
         return borrowed((take) => {
             const pointer = take(16);
             const steps = this.#call("scene_begin_frame", this.#pointer, seconds, dt, mostSteps, pointer);
-            if (steps < 0) throw new NoMemory(library().scene_bytes(this.#pointer));
+            if (steps < 0) throw new NoMemory(library().scene_bytes(this.#pointer) >>> 0);
             const [time, dropped] = memory.float64(pointer, 2);
             if (steps > 0)
                 this.#take(number, dt, steps, seconds, move && (() => move(time, dropped)), method);
@@ -243,7 +244,7 @@ export class Scene {
     }
 
     snapshot() {
-        const size = this.#call("scene_bytes", this.#pointer);
+        const size = this.#call("scene_bytes", this.#pointer) >>> 0;
         const snapshot = Object.freeze({ time: this.time });
         const bytes = memory.uint8(this.#scene, size).slice();
         const [clock, before] = this.#frames().map((array) => array.slice());
@@ -255,7 +256,8 @@ export class Scene {
     restore(snapshot) {
         const kept = snapshots.get(snapshot);
         check(kept?.scene === this, "snapshot", "a snapshot of this scene", snapshot, TypeError);
-        memory.uint8(this.#scene, this.#call("scene_bytes", this.#pointer)).set(kept.bytes);
+        this.#call("scene_bytes", this.#pointer); // throws if the scene has been freed
+        memory.uint8(this.#scene, kept.bytes.length).set(kept.bytes);
         this.#force = kept.force;
         library().scene_moved(this.#pointer);
         const [clock, before] = this.#frames();
@@ -488,7 +490,12 @@ export class Scene {
             Array.from(memory.uint32(pointers, this.axes), (pointer) => this.#viewOf(pointer));
         const forces = arrays(force);
         try {
-            this.#force(t, arrays(position), forces, this.#usesVelocity ? arrays(velocity) : undefined);
+            const velocities = this.#usesVelocity ? arrays(velocity) : undefined;
+            const result = this.#force(t, arrays(position), forces, velocities);
+            check(typeof result?.then !== "function", "force", "synchronous", result, TypeError);
+            // Forces that were written after that would be lost.
+            if (this.#views.buffer !== library().memory.buffer)
+                throw new TypeError("memory grew during force: create scenes and grids outside of it");
         } catch (thrown) {
             this.#error ??= { thrown };
             // The step fails, so that the scene stays as it was. Memory may have grown meanwhile.

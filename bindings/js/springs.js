@@ -3,12 +3,13 @@
 import { check, checkFinite, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
 import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
-import { changed } from "./watch.js";
+import { changed, moves } from "./watch.js";
 
 /** Settings of each value; if no option is an array, of all values. */
 function settingsOf(options, count) {
     const lists = Object.entries(options).filter(
-        ([, value]) => typeof value === "object" && value?.length >= 0,
+        ([name, value]) =>
+            name !== "clamp" && name !== "onRest" && typeof value === "object" && value?.length >= 0,
     );
     for (const [name, { length }] of lists) check(length === count, `${name}.length`, `${count}`, length);
     if (lists.length === 0) return settings(options);
@@ -102,14 +103,20 @@ export class Springs {
     }
 
     finish() {
+        this.#failed = -1;
         for (let i = 0; i < this.#value.length; i++) {
             if (this.#rests(i)) continue;
+            if (!isNumber(0 * this.#target[i] + 0 * this.#targetVelocity[i])) {
+                if (this.#failed < 0) this.#failed = i;
+                continue;
+            }
             this.#value[i] = this.#target[i];
             this.#velocity[i] = this.#targetVelocity[i];
             if (this.#velocity[i] === 0) this.#rested.push(i);
         }
         changed(this);
         this.#tell();
+        this.#complain();
     }
 
     step(dt) {
@@ -121,20 +128,43 @@ export class Springs {
         if (!Array.isArray(each)) moving = this.#advance(each, 0, count, dt);
         else for (let i = 0; i < count; i++) moving += this.#advance(each[i], i, i + 1, dt);
         this.#tell();
-        const failed = this.#failed;
-        if (failed >= 0) {
-            // The others have been advanced.
-            for (const name of ["target", "targetVelocity", "value", "velocity"])
-                checkFinite(`${name}[${failed}]`, this[name][failed]);
-            throw new RangeError(`value[${failed}] or velocity[${failed}] overflows`);
-        }
+        this.#complain();
         return moving;
     }
 
+    [moves]() {
+        const [value, velocity, target, speed] = [
+            this.#value,
+            this.#velocity,
+            this.#target,
+            this.#targetVelocity,
+        ];
+        return value.some(
+            (x, i) => !this.#rests(i) && isNumber(0 * x + 0 * velocity[i] + 0 * target[i] + 0 * speed[i]),
+        );
+    }
+
+    /** Throws what is wrong with the first value that has kept its state. The others have been advanced. */
+    #complain() {
+        const failed = this.#failed;
+        if (failed < 0) return;
+        for (const name of ["target", "targetVelocity", "value", "velocity"])
+            checkFinite(`${name}[${failed}]`, this[name][failed]);
+        throw new RangeError(`value[${failed}] or velocity[${failed}] overflows`);
+    }
+
+    /** Calls onRest() for each value that rests, and then throws the first error of these calls. */
     #tell() {
         const rested = this.#rested;
         this.#rested = [];
-        if (this.onRest) for (const i of rested) this.onRest(i, this);
+        let failure;
+        for (const i of rested)
+            try {
+                this.onRest?.(i, this);
+            } catch (error) {
+                failure ??= { error };
+            }
+        if (failure) throw failure.error;
     }
 
     /** A motion begins at a new target, and at a value on its target. Returns the largest size of a motion. */

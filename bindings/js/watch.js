@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Listeners of springs that may begin to move. The loop of animate.js is one.
 
+/** The name of a method of Springs: whether a value moves that steps can advance. */
+export const moves = Symbol();
+
 const listeners = new WeakMap();
 
 /** Calls `listener` whenever a spring may begin to move; null: no longer. */

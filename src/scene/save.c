@@ -64,7 +64,7 @@ static state_header header_of(const spring_scene *s)
         .version = format_version,
         .precision = sizeof(scalar),
         .axes = l->axes,
-        .flags = l->flags,
+        .flags = s->force != NULL ? l->flags : l->flags & ~(uint32_t)SPRING_SCENE_FORCE_IGNORES_VELOCITY,
         .methods = l->methods,
         .most_colliders = l->colliders,
         .particles = l->particles,

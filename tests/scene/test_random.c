@@ -868,7 +868,9 @@ static void too_stiff_for_masses(void)
 static void travel(block *b, const model *m)
 {
     const saved y = save(b->s);
-    block other = block_of(&m->def);
+    spring_scene_def def = m->def;
+    def.flags ^= def.force == NULL && one_in(2) ? IGNORES : 0; /* means nothing without a callback */
+    block other = block_of(&def);
     if (m->def.colliders > 0)
         set_colliders((spring_scene *[]){other.s, other.s}, m);
     spring_scene_set_gravity(other.s, (double[]){0.3, 0.2, 0.1});

@@ -289,8 +289,12 @@ class Batch(Generic[F]):
         snapshot : tuple of ndarray
             See `snapshot`.
         """
+        x, v = (np.asarray(values, self._x.dtype) for values in snapshot)
+        if x.shape != self._x.shape or v.shape != x.shape:
+            raise ValueError(f"snapshot: its shapes are {x.shape} and {v.shape}, not {self._x.shape}")
+
         def restore() -> None:
-            self._x[:], self._v[:] = snapshot
+            self._x[:], self._v[:] = x, v
 
         self._guard.short(restore)
 

@@ -2,6 +2,7 @@
 """Bodies that the particles of a scene cannot enter."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
@@ -126,6 +127,19 @@ def _is_gap(result: str, arguments: list[str]) -> bool:
     return result in ("uint32_t", "uint", "unsignedint") and len(arguments) == 4 and arguments[0].endswith("*") and numbers
 
 
+def _unit_normal(normal: ArrayLike) -> list[float]:
+    """Return the unit vector with the same bits on every machine, in JavaScript too. A unit vector stays as it is."""
+    vector: list[float] = np.asarray(normal, np.float64).reshape(-1).tolist()
+    largest = max(map(abs, vector), default=0.0)
+    if not 0 < largest < np.inf or any(component != component for component in vector):
+        invalid("normal", normal, reason="not a vector with a length greater than 0")
+    square = sum(component * component for component in vector)
+    if not 1e-280 < square < 1e280:
+        vector = [component / largest for component in vector]
+        square = sum(component * component for component in vector)
+    return vector if abs(square - 1) <= 1e-15 else [component / math.sqrt(square) for component in vector]
+
+
 def plane(at: ArrayLike, normal: ArrayLike, **options: Unpack[ColliderOptions]) -> Collider:
     """Return a half-space, from a point of its surface and its normal.
 
@@ -138,11 +152,7 @@ def plane(at: ArrayLike, normal: ArrayLike, **options: Unpack[ColliderOptions]) 
     **options
         velocity, spin, friction, restitution, acceleration, spin_acceleration, surface, mask: see `Collider`.
     """
-    length = float(np.linalg.norm(normal))
-    if not 0 < length < np.inf:
-        invalid("normal", normal, reason="not a vector with a length greater than 0")
-    unit = [component / length for component in np.asarray(normal, np.float64).tolist()]
-    return Collider("plane", at, axis=(unit, (0, 0, 0), (0, 0, 0)), **options)
+    return Collider("plane", at, axis=(_unit_normal(normal), (0, 0, 0), (0, 0, 0)), **options)
 
 
 def sphere(at: ArrayLike, radius: float, **options: Unpack[ColliderOptions]) -> Collider:

@@ -58,7 +58,8 @@ class SpringError(Exception):
         message = reason or _text(lib.spring_status_string(status))
         if field is not None:
             place = "" if index is None else f"[{index}]"
-            message = f"{field}{place} = {value!r}: {message}"
+            given = "" if value is None else f" = {value!r}"
+            message = f"{field}{place}{given}: {message}"
         super().__init__(message)
         self._arguments = status, field, value, index, reason
 

@@ -216,7 +216,12 @@ def components(particles: int, links: ArrayLike) -> tuple[int, NDArray[np.uint32
     count = lib.spring_links_components(len(component), len(array), as_c(array),
                                         ffi.cast("uint32_t *", ffi.from_buffer(component)))
     if count == 0 and len(component) > 0:
-        fail(lib.SPRING_EINVAL, "links")
+        wrong = (array["a"] == array["b"]) | (np.maximum(array["a"], array["b"]) >= len(component))
+        for name in ("stiffness", "damping"):
+            wrong |= ~((array[name] >= 0) & (array[name] < np.inf))
+        for index in np.flatnonzero(wrong)[:1].tolist():
+            fail(lib.SPRING_EINVAL, "links", array[index].tolist(), index)
+        fail(lib.SPRING_EINVAL, "particles", particles)
     return count, component
 
 

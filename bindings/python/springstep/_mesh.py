@@ -27,24 +27,23 @@ def _positions(position: ArrayLike) -> NDArray[np.float64]:
     array = array[:, np.newaxis] if array.ndim == 1 else array
     if array.ndim != 2 or not 1 <= array.shape[1] <= 3:
         raise ValueError(f"position: its shape is {array.shape}, not (particles, axes)")
+    if (wrong := np.flatnonzero(~np.isfinite(array).all(1))).size:
+        invalid("position", array[wrong[0]].tolist(), int(wrong[0]))
     return array
 
 
-def _in_space(field: str, position: ArrayLike) -> NDArray[np.float64]:
+def _in_space(position: ArrayLike) -> NDArray[np.float64]:
     array = _positions(position)
     if array.shape[1] != 3:
-        raise ValueError(f"{field}: its shape is {array.shape}, not (particles, 3)")
-    if not np.isfinite(array).all():
-        row = int(np.flatnonzero(~np.isfinite(array).all(1))[0])
-        invalid(field, array[row].tolist(), row)
+        raise ValueError(f"position: its shape is {array.shape}, not (particles, 3)")
     return array
 
 
-def _corners(triangles: ArrayLike) -> NDArray[np.uint32]:
+def _corners(triangles: ArrayLike, particles: int) -> NDArray[np.uint32]:
     array = np.asarray(triangles)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
         raise ValueError(f"triangles: an array of {array.dtype} and shape {array.shape}, not integers, (triangles, 3)")
-    if (outside := np.flatnonzero(((array < 0) | (array >= 2**32)).any(1))).size:
+    if (outside := np.flatnonzero(((array < 0) | (array >= particles)).any(1))).size:
         fail(lib.SPRING_ERANGE, "triangles", array[outside[0]].tolist(), int(outside[0]))
     return np.ascontiguousarray(array, np.uint32)
 
@@ -62,20 +61,23 @@ def _work(count: int, kind: str = "uint32_t") -> Any:
     return ffi.new(f"{kind}[]", max(count, 1))
 
 
-def _made(kind: np.dtype[np.void], call: Callable[[Any, Any], int], **arguments: object) -> NDArray[np.void]:
-    """Return what a function of C makes that first counts. It is called with a pointer to links, and the count."""
+def _made(kind: np.dtype[np.void], call: Callable[[Any, Any], int], field: str, reason: str | None,
+          **numbers: float) -> NDArray[np.void]:
+    """Return what a function of C makes that first counts. It is called with a pointer to links, and the count. If it
+    accepts none of its numbers >= 0, they are named, otherwise the field."""
     count = ffi.new("size_t *")
     c_name = "spring_link *" if kind is LINK else "spring_weighted_link *"
     result = np.empty(0, kind)
     if (status := call(ffi.cast(c_name, 0), count)) == lib.SPRING_OK:
         result = np.empty(count[0], kind)
         status = call(ffi.cast(c_name, ffi.from_buffer(result)), count)
+    for name, value in numbers.items() if status else ():
+        if not 0 <= value < np.inf or (name == "fraction" and value == 0):
+            invalid(name, value)
+    if status == lib.SPRING_EINVAL:
+        invalid(field, None, reason=reason)
     if status:
-        for field in ("rigidity", "damping_time", "fraction", "slack"):
-            value: Any = arguments.get(field, 1.0)
-            if not 0 <= value < np.inf or (field == "fraction" and value == 0):
-                invalid(field, value)
-        fail(status, *next(iter(arguments.items())))
+        fail(status, field)
     return result
 
 
@@ -105,7 +107,7 @@ def bend_rod(position: ArrayLike, rigidity: float, *, pinned: ArrayLike | None =
     flags = _flags(pinned, len(at))
     return _made(WEIGHTED_LINK, lambda out, count: lib.spring_bend_rod(
         len(at), at.shape[1], ffi.from_buffer("double[]", at), flags, rigidity, damping_time, out, count),
-        rigidity=rigidity, damping_time=damping_time)
+        "position", "neighbouring particles are at one place", rigidity=rigidity, damping_time=damping_time)
 
 
 def bend_grid(count: Iterable[SupportsIndex], spacing: float, rigidity: float, *, pinned: ArrayLike | None = None,
@@ -135,7 +137,7 @@ def bend_grid(count: Iterable[SupportsIndex], spacing: float, rigidity: float, *
     families = lib.SPRING_BEND_ROWS | (lib.SPRING_BEND_DIAGONALS if diagonals else 0)
     return _made(WEIGHTED_LINK, lambda out, number: lib.spring_bend_grid(
         sheet, flags, families, rigidity, damping_time, out, number),
-        rigidity=rigidity, damping_time=damping_time, count=tuple(sheet.count))
+        "count", "not two directions with more than one particle", rigidity=rigidity, damping_time=damping_time)
 
 
 def bend_mesh(position: ArrayLike, triangles: ArrayLike, rigidity: float, *, pinned: ArrayLike | None = None,
@@ -160,11 +162,13 @@ def bend_mesh(position: ArrayLike, triangles: ArrayLike, rigidity: float, *, pin
     ndarray of WEIGHTED_LINK
         For `weighted_links` of `Scene`.
     """
-    at, corners = _in_space("position", position), _corners(triangles)
+    at = _in_space(position)
+    corners = _corners(triangles, len(at))
     flags, work = _flags(pinned, len(at)), _work(len(at) + 6 * len(corners) + 1)
     return _made(WEIGHTED_LINK, lambda out, count: lib.spring_bend_mesh(
         len(at), ffi.from_buffer("double[]", at), len(corners), ffi.from_buffer("uint32_t[]", corners), flags, rigidity,
-        damping_time, out, count, work), triangles=None, rigidity=rigidity, damping_time=damping_time)
+        damping_time, out, count, work), "triangles", "a triangle has no area, or an edge has more than two triangles",
+        rigidity=rigidity, damping_time=damping_time)
 
 
 def tethers(position: ArrayLike, links: ArrayLike, pinned: ArrayLike, *, fraction: float = 0.05, slack: float = 0.0,
@@ -200,7 +204,7 @@ def tethers(position: ArrayLike, links: ArrayLike, pinned: ArrayLike, *, fractio
     })
     work, distance = _work(2 * len(at)), _work(2 * len(at), "double")
     return _made(LINK, lambda out, count: lib.spring_links_tethers(definition, fraction, slack, out, count, work, distance),
-                 links=None, fraction=fraction, slack=slack)
+                 "links", None, fraction=fraction, slack=slack)
 
 
 def from_mesh(position: ArrayLike, triangles: ArrayLike, stiffness: float, damping: float = 0.0, *,
@@ -223,14 +227,16 @@ def from_mesh(position: ArrayLike, triangles: ArrayLike, stiffness: float, dampi
     Mesh
         A particle is at its first vertex. To draw the mesh, use ``scene.position()[mesh.particle_of]``.
     """
-    at, corners = _in_space("position", position), _corners(triangles)
+    at = _in_space(position)
+    corners = _corners(triangles, len(at))
     work, distance = _work(3 * len(at) + 6 * len(corners) + 1), -1.0 if weld is None else weld
     if not 0 <= distance < np.inf and weld is not None:
         invalid("weld", weld)
     particle_of, particles = np.zeros(len(at), np.uint32), ffi.new("size_t *")
     links = _made(LINK, lambda out, count: lib.spring_links_from_mesh(
         len(at), ffi.from_buffer("double[]", at), len(corners), ffi.from_buffer("uint32_t[]", corners), distance,
-        ffi.from_buffer("uint32_t[]", particle_of), particles, out, count, work), triangles=None)
+        ffi.from_buffer("uint32_t[]", particle_of), particles, out, count, work),
+        "triangles", "a triangle has no area")
     links["stiffness"], links["damping"] = stiffness, damping
     places = np.empty((particles[0], 3))
     places[particle_of[::-1]] = at[::-1]  # the first vertex of a particle comes last

@@ -308,8 +308,8 @@ class Scene(Generic[F]):
 
     @staticmethod
     def _numbers(field: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-        array = np.ascontiguousarray(values, np.float64)
-        if array.ndim + 1 == len(shape) and shape[-1] == 1:
+        array = np.asarray(values, np.float64, order="C")
+        if 0 < array.ndim == len(shape) - 1 and shape[-1] == 1:
             array = array[:, np.newaxis]
         if array.shape != shape:
             raise ValueError(f"{field}: its shape is {array.shape}, not {shape}")
@@ -317,7 +317,7 @@ class Scene(Generic[F]):
 
     @staticmethod
     def _flags(values: ArrayLike, count: int | None = None) -> NDArray[np.uint8]:
-        flags = np.ascontiguousarray(values, np.bool_).view(np.uint8)
+        flags = np.asarray(values, np.bool_, order="C").view(np.uint8)
         if flags.ndim != 1 or (count is not None and len(flags) != count):
             raise ValueError(f"pinned: its shape is {flags.shape}, not {'(count,)' if count is None else (count,)}")
         return flags

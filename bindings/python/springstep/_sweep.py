@@ -106,13 +106,19 @@ class _Own:
 
     def _row(self, point: dict[str, Any], method: MethodName) -> tuple[Any, ...]:
         how = {name: point.get(name, default) for name, default in self.run.items()}
+        for name, value in how.items():
+            if value is not None and not 0 < value < np.inf:
+                invalid(name, float(value), reason="not a number greater than 0")
         scene = self._make(**{name: value for name, value in point.items() if name not in self.run})
         dt, status = np.nan, "finished"
         try:
             dt = 1 / 60 / how["steps_per_frame"]
             if how["stable_fraction"] is not None:
                 dt = how["stable_fraction"] * scene.stable_step(method)
-            scene.advance(dt, max(1, round(how["duration"] / dt)), method)
+            if 0 < dt < np.inf:
+                scene.advance(dt, max(1, round(how["duration"] / dt)), method)
+            else:
+                status = "no_step"
         except UnsupportedError:
             status = "unsupported"
         except NonFiniteError:
@@ -196,8 +202,8 @@ def sweep(over: Mapping[str, str | float | Iterable[Any]], methods: str | Iterab
     -------
     ndarray
         With a field for each column, one row per point and method. Rows of springs and presets are bit-identical to those
-        of spring-sweep. A function's rows have the parameters, `method`, `dt_s`, `status` (``"finished"``, ``"exploded"`` or
-        ``"unsupported"``), and the measures.
+        of spring-sweep. A function's rows have the parameters, `method`, `dt_s`, `status` (``"finished"``, ``"exploded"``,
+        ``"unsupported"``, or ``"no_step"`` if `stable_fraction` gives none), and the measures.
     """
     for name, number in (("points_per_task", points_per_task), ("processes", processes)):
         if number is not None and operator.index(number) < 1:

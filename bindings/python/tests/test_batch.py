@@ -65,6 +65,9 @@ def test_arrays_are_used_where_they_are():
     v[:] = 0
     batch.advance(0.01)
     assert (x == before[0]).all()  # nothing pulls any more
+    with pytest.raises(ValueError, match="snapshot"):
+        batch.restore((before[0] + 1, before[1][1:]))
+    assert (x == before[0]).all()
     batch.restore(before)
     assert (v == before[1]).all() and batch.v is v
 

@@ -75,10 +75,11 @@ def test_an_attachment_and_flags():
 
 
 @pytest.mark.parametrize("call, error, field", [
-    (lambda: bend_rod([[0, 0, 0]] * 3, 1.0), springstep.InvalidError, "rigidity"),
+    (lambda: bend_rod([[0, 0, 0]] * 3, 1.0), springstep.InvalidError, "position"),
+    (lambda: bend_rod([0.0, 1, np.nan], 1.0), springstep.InvalidError, "position"),
     (lambda: bend_rod([0.0, 1, 2], -1.0), springstep.InvalidError, "rigidity"),
     (lambda: bend_rod([0.0, 1, 2], 1.0, damping_time=np.nan), springstep.InvalidError, "damping_time"),
-    (lambda: bend_grid([5], 0.1, 1.0), springstep.InvalidError, "rigidity"),
+    (lambda: bend_grid([5], 0.1, 1.0), springstep.InvalidError, "count"),
     (lambda: from_mesh(np.zeros((3, 3)), [[0, 1, 2]], 1.0), springstep.InvalidError, "triangles"),
     (lambda: from_mesh(np.eye(3), [[0, 1, 3]], 1.0), springstep.RangeError, "triangles"),
     (lambda: from_mesh(np.eye(3), [[0, 1, -1]], 1.0), springstep.RangeError, "triangles"),

@@ -526,7 +526,9 @@ def test_held_forces_go_in_and_out(dtype):
     ({"editable": True}, lambda s: s.tear(-1), springstep.InvalidError, "stretch"),
     ({"editable": True}, lambda s: s.tear([1, 1, 1, np.nan, 1]), springstep.InvalidError, r"stretch\[3\]"),
     ({"editable": True}, lambda s: s.tear([1, 1]), ValueError, "stretch"),
-    ({}, lambda s: springstep.components(2, [(0, 2, 1, 1, 0)]), springstep.InvalidError, "links"),
+    ({}, lambda s: springstep.components(2, [(0, 1, 1, 1, 0), (0, 2, 1, 1, 0)]), springstep.InvalidError, r"links\[1\] = \(0, 2"),
+    ({"editable": True}, lambda s: s.set_mass(1.0), ValueError, r"mass: its shape is \(\)"),
+    ({"editable": True}, lambda s: s.set_pinned(True), ValueError, r"pinned: its shape is \(\)"),
     ({}, lambda s: s.touching(), springstep.UnsupportedError, "colliders"),
     ({}, lambda s: s.set_colliders([]), springstep.UnsupportedError, "colliders"),
     ({"colliders": 1}, lambda s: s.touching(3, 4), springstep.RangeError, "first"),
@@ -553,6 +555,14 @@ def test_what_is_refused_is_named(options, call, kind, named):
     scene = rope(**options)
     with pytest.raises(kind, match=named):
         call(scene)
+
+
+def test_normals_of_planes():
+    random = np.random.default_rng(3)
+    for normal in [*random.normal(size=(200, 3)), [3e-200, 4e-200, 0], [3e200, 0, 4e200]]:
+        unit = springstep.plane([0, 0, 0], normal).axis[0]
+        assert np.allclose(unit, np.divide(normal, np.abs(normal).max()) / np.linalg.norm(np.divide(normal, np.abs(normal).max())))
+        assert springstep.plane([0, 0, 0], unit).axis[0] == unit
 
 
 @FLOATS

@@ -119,6 +119,9 @@ def test_a_function_that_makes_a_scene():
     rows = springstep.sweep({"steps_per_frame": [16, 32], "duration": [0.5]}, "leapfrog", scene=scenes.hung, measure=scenes.lowest)
     assert rows["dt_s"].tolist() == [1 / 960, 1 / 1920] and rows.dtype.names[-1] == "lowest"
     assert len(springstep.sweep({}, scene=scenes.hung, measure=scenes.lowest)) == 6
+    row = springstep.sweep({"stable_fraction": [0.5]}, "euler", scene=lambda: springstep.Scene([0.0, 1.0], [(0, 1)], stiffness=3.0),
+                           measure=scenes.lowest)[0]
+    assert row["status"] == "no_step" and np.isnan(row["lowest"])
 
 
 def test_processes():
@@ -132,6 +135,8 @@ def test_processes():
     (springstep.InvalidError, "method = 'verlet': not one of euler, ", {"methods": "verlet"}),
     (springstep.InvalidError, "over = 'size=1:2'", {"over": {"size": "1:2"}}),
     (springstep.InvalidError, "processes = 0", {"processes": 0}),
+    (springstep.InvalidError, "duration = -1.0: not a number greater than 0", {"over": {"duration": [-1]}}),
+    (springstep.InvalidError, "stable_fraction = 0.0", {"over": {"stable_fraction": [0.0]}}),
     (TypeError, ".*unexpected keyword argument 'length'", {"over": {"length": 2}}),
 ])
 def test_what_own_scenes_refuse(kind, named, options):
