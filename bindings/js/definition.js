@@ -182,7 +182,7 @@ export function linksAt(pointer, count) {
     return links;
 }
 
-const wanted = {
+export const wanted = {
     gravity: "a finite number",
     drag: "a finite number >= 0, also when it is divided by a mass",
     maxSpeed: "a finite number >= 0",
@@ -196,7 +196,21 @@ const wanted = {
     rest: "a finite number >= 0",
     stiffness: "a finite number >= 0, also when it is divided by a mass",
     damping: "a finite number >= 0, also when it is divided by a mass",
+    normal: "a direction in the plane of the scene",
+    axes: "orthonormal to 1e-3",
+    half: "numbers >= 0",
+    restitution: "a number from 0 to 1",
 };
+
+/** Throws what is wrong with a link that is to replace the link `now`. */
+export function refuseLink(links, i, index, now) {
+    const [a, b, ...values] = ["a", "b", ...perLink].map((field) => linkValue(links, i, field));
+    const same = [now.a, now.b].includes(a) && a + b === now.a + now.b;
+    check(same, `ends of link ${index}`, `${now.a} and ${now.b}`, `${a}, ${b}`, RangeError);
+    let k = values.findIndex((value) => !(value >= 0 && value < Infinity));
+    if (k < 0) k = values[1] < values[2] ? 2 : 1; // too large for a mass
+    check(false, `${perLink[k]} of link ${index}`, wanted[perLink[k]], values[k]);
+}
 
 /** Numbers of a collider, in the order of spring_collider: name, how many, and what it is by default. */
 const fields = [
@@ -222,6 +236,16 @@ const special = new Set(Object.values(own).flat());
 const required = { plane: [], sphere: ["radius"], capsule: ["to", "radius"], box: ["half"] };
 const colliderNumbers = 39;
 export const colliderBytes = 8 * 44; // shape, numbers, mask, two pointers, and two numbers of custom bodies
+
+/** A unit vector by the rule of all bindings, which keeps the normals that getColliders() returns. */
+function unit([x, y = 0, z = 0]) {
+    const over = (size) => [x / size, y / size, z / size];
+    const square = x * x + y * y + z * z;
+    if (Math.abs(square - 1) <= 1e-15) return over(1);
+    if (square > 1e-280 && square < 1e280) return over(Math.sqrt(square));
+    const most = Math.max(...over(1).map(Math.abs));
+    return most > 0 && most < Infinity ? unit(over(most)) : null;
+}
 
 /** Colliders in the layout of spring_collider. */
 export function lendColliders(take, colliders) {
@@ -250,17 +274,10 @@ export function lendColliders(take, colliders) {
             if (field === "axes" && shape === 0) {
                 const normal = collider.normal ?? [0, 1, 0];
                 checkArray(`${name}.normal`, normal);
-                const size = Math.hypot(...normal);
-                const good = size > 0 && size < Infinity;
-                check(good, `${name}.normal`, "a direction", String(normal), RangeError);
-                for (let k = 0; k < 3; k++) numbers[6 + k] = (normal[k] ?? 0) / size;
+                const direction = unit(normal);
+                check(direction, `${name}.normal`, "a direction", String(normal), RangeError);
+                numbers.splice(6, 3, ...direction);
             }
-        }
-        for (const field of ["radius", "friction", "restitution"]) {
-            const value = collider[field] ?? 0;
-            const most = field === "restitution" ? 1 : Infinity;
-            const what = most === 1 ? "a number from 0 to 1" : "a finite number >= 0";
-            check(value >= 0 && value <= most, `${name}.${field}`, what, value);
         }
         const { mask = 0 } = collider;
         checkUpTo(`${name}.mask`, mask, 0xffffffff);
@@ -271,6 +288,23 @@ export function lendColliders(take, colliders) {
         memory.uint32(at + 8 + 8 * colliderNumbers, 1)[0] = mask;
     });
     return pointer;
+}
+
+/** Throws what spring_scene_check_colliders() has found. */
+export function refuseCollider(colliders, pointer) {
+    const [name, i] = memory.uint32(pointer, 2);
+    const collider = colliders[i];
+    let field = text(name);
+    if (field === "axis") field = collider.shape === "plane" ? "normal" : "axes";
+    const value = collider[field];
+    const what = wanted[nameOf[field] ?? field] ?? "smaller";
+    check(
+        false,
+        `colliders[${i}].${field}`,
+        what,
+        typeof value === "number" ? value : String(value),
+        RangeError,
+    );
 }
 
 /** Colliders from that layout. */
@@ -362,8 +396,12 @@ export function define(take, definition) {
     if (base) checkArray("base", base, 3 * particles);
     checkUpTo("component", component, 3 - axes);
     check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
-    let set = forceUsesVelocity ? 0 : forceIgnoresVelocity;
-    for (const [name, flag] of Object.entries(flags)) if (definition[name]) set |= flag;
+    let set = forceUsesVelocity ? 0 : forceIgnoresVelocity; // also without a force, which may be set later
+    for (const [name, flag] of Object.entries({ ...flags, forceUsesVelocity: 0 })) {
+        const value = definition[name] ?? false;
+        check(typeof value === "boolean", name, "true or false", value, TypeError);
+        if (value) set |= flag;
+    }
     const bits = Array.from(methods, (name) => 1 << methodNumber(name)).reduce((all, bit) => all | bit, 0);
     const optional = (values, Type, size) => (values ? lend(take, values, Type, size) : 0);
     const [linkPointer, linkCount] = lendLinks(take, links);

@@ -13,6 +13,9 @@ import {
     linkBytes,
     linksAt,
     methodNumber,
+    refuseCollider,
+    refuseLink,
+    wanted,
 } from "./definition.js";
 import { components, textureCoordinates, triangles } from "./grid.js";
 import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
@@ -25,6 +28,8 @@ const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
 const mismatch = 14;
+// Words of the header of a state from the third on: "ends" of links, and with colliders, arrays of particles.
+const headers = "precision,axes,flags,methods,colliders,particles,links,weightedLinks,ends,force".split(",");
 const stepFailures = {
     [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
     [unstable]: ["a particle would be faster than maxSpeed, or not finite", "SPRING_EUNSTABLE"],
@@ -284,8 +289,14 @@ export class Scene {
             const pointer = take(state.length);
             memory.uint8(pointer, state.length).set(state);
             const status = this.#call("spring_scene_load", this.#scene, pointer, state.length);
-            const what =
-                status === mismatch ? "the state of a scene with this definition" : "an undamaged state";
+            let what = "an undamaged state";
+            if (status === mismatch) {
+                const own = new Uint32Array(this.save().buffer, 0, 24);
+                const its = memory.uint32(pointer, 24);
+                const differs = (_, k) => own[2 * k + 4] !== its[2 * k + 4]; // low halves of words
+                const other = headers.filter(differs).join(", ") || "damping";
+                what = `the state of a scene with this definition, not with other ${other}`;
+            }
             check(status === 0, "state", what, `${state.length} bytes`, RangeError);
         });
         this.#frames()[0].fill(0);
@@ -344,8 +355,9 @@ export class Scene {
         for (let i = 0; i < mass.length; i++)
             check(isNumber(mass[i]) && mass[i] > 0, `mass[${i}]`, "a finite number > 0", mass[i]);
         borrowed((take) => {
-            const pointer = lend(take, mass);
-            this.#changed(this.#call("spring_scene_set_mass", this.#scene, first, mass.length, pointer));
+            this.#edit("spring_scene_set_mass", first, mass.length, lend(take, mass), 8, (i) =>
+                check(false, `mass[${i}]`, `${wanted.mass}, also times stiffness or drag`, mass[i]),
+            );
         });
     }
 
@@ -377,7 +389,9 @@ export class Scene {
         borrowed((take) => {
             const [pointer, count] = lendLinks(take, links);
             this.#checkRange(first, count, this.links);
-            this.#changed(this.#call("spring_scene_set_links", this.#scene, first, count, pointer));
+            this.#edit("spring_scene_set_links", first, count, pointer, linkBytes, (i) =>
+                refuseLink(links, i, first + i, this.getLink(first + i)),
+            );
         });
     }
 
@@ -425,11 +439,9 @@ export class Scene {
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
             check(status !== outOfRange, "colliders.length", "at most what the definition has", list.length);
             if (status === 0) return;
-            const index = take(4);
-            this.#call("spring_scene_check_colliders", this.#scene, pointer, list.length, 0, index);
-            const i = memory.uint32(index, 1)[0]; // all else has been checked
-            const [axes, what] = [list[i].axes, "orthonormal to 1e-3"];
-            check(false, `colliders[${i}].axes`, what, axes ? Array.from(axes).join() : axes, RangeError);
+            const found = take(8);
+            this.#call("spring_scene_check_colliders", this.#scene, pointer, list.length, found, found + 4);
+            refuseCollider(list, found);
         });
     }
 
@@ -528,6 +540,18 @@ export class Scene {
         checkCount("first", first);
         checkCount("count", count);
         check(first + count <= all, "first + count", `at most ${all}`, first + count);
+    }
+
+    /** Changes `count` values at a pointer, or none, and then throws refuse(i) for the first invalid one. */
+    #edit(name, first, count, pointer, bytes, refuse) {
+        const change = (i, n) => this.#call(name, this.#scene, first + i, n, pointer + i * bytes);
+        const status = change(0, count);
+        if (status === 0 || status === disabled) return this.#changed(status);
+        const saved = this.snapshot();
+        let i = 0;
+        while (i < count - 1 && change(i, 1) === 0) i++;
+        this.restore(saved);
+        refuse(i);
     }
 
     /** The status of a change. */
