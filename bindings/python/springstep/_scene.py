@@ -742,8 +742,8 @@ class Scene(Generic[F]):
         status = self._guard.short(load)
         if status:
             invalid("state", f"{len(state)} bytes",
-                    reason="the state of a scene with another definition" if status == lib.SPRING_EMISMATCH
-                    else "damaged, truncated, or with custom bodies at other places")
+                    reason=f"the state of a scene with another definition: {_difference(state, self.save())}"
+                    if status == lib.SPRING_EMISMATCH else "damaged, truncated, or with custom bodies at other places")
 
     def set_time(self, t: float) -> None:
         """Set the time. Colliders stay where they are, and nothing else changes.
@@ -1077,6 +1077,17 @@ class Scene(Generic[F]):
 
     def __repr__(self) -> str:
         return f"<Scene of {self._particles} particles and {self._links} links on {self._axes} axes, {self._dtype}>"
+
+
+def _difference(state: bytes | bytearray | memoryview, own: bytes) -> str:
+    """Return the first word of the headers of two states in which their definitions differ."""
+    names = {1: "version", 2: "bytes of a number", 3: "axes", 4: "flags", 5: "methods", 6: "colliders", 7: "particles",
+             8: "links", 9: "weighted links", 10: "hash of ends and flags of links, radius, friction and mask", 11: "force"}
+    theirs, ours = (np.frombuffer(each, "<u8", 25) for each in (state, own))
+    for place, name in names.items():
+        if theirs[place] != ours[place]:
+            return f"{name} {theirs[place]}, not {ours[place]}"
+    return f"{theirs[14]} damped links, not {ours[14]}"
 
 
 def _pins_in(state: bytes | bytearray | memoryview, held: bool) -> NDArray[np.bool_]:

@@ -123,10 +123,12 @@ def test_states_that_do_not_fit_are_refused():
     scene = cloth(5)
     scene.advance(1e-3, 10)
     state = scene.save()
-    for other in (cloth(5, dtype=np.float32), cloth(6), cloth(5, editable=True), cloth(5, held_forces=True), cloth(5, force=swing),
-                  cloth(5, colliders=1), cloth(5, methods=["rk4"])):
+    for other, named in ((cloth(5, dtype=np.float32), "bytes of a number 8, not 4"), (cloth(6), "particles 25, not 36"),
+                         (cloth(5, editable=True), "flags 0, not 1"), (cloth(5, held_forces=True), "flags 0, not 16"),
+                         (cloth(5, force=swing), "force 0, not 1"), (cloth(5, colliders=1), "colliders 0, not 1"),
+                         (cloth(5, methods=["rk4"]), "methods ")):
         before = other.save()
-        with pytest.raises(InvalidError, match="^state = .*the state of a scene with another definition"):
+        with pytest.raises(InvalidError, match=f"^state = .*the state of a scene with another definition: {named}"):
             other.load(state)
         assert other.save() == before
     for wrong in (b"", state[:-1], state + b"\0", state[:200] + bytes([state[200] ^ 1]) + state[201:]):
