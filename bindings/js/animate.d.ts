@@ -9,7 +9,8 @@ export interface AnimateOptions {
 /**
  * Advances a spring in every frame in which it moves, and calls `draw` after each step, and once in the next frame. The loop of
  * frames is shared by all springs. It starts when a target, value, velocity or parameter of one of them changes, and stops when
- * all are at rest. The result stops the animation of this `draw`.
+ * all are at rest. Errors in callbacks are reported, and the frame is still drawn. The result stops the animation of this `draw`
+ * at once.
  */
 export interface Animate {
     (spring: Spring, draw: (value: number, spring: Spring) => void, options?: AnimateOptions): () => void;

@@ -399,7 +399,7 @@ export function define(take, definition) {
     let set = forceUsesVelocity ? 0 : forceIgnoresVelocity; // also without a force, which may be set later
     for (const [name, flag] of Object.entries({ ...flags, forceUsesVelocity: 0 })) {
         const value = definition[name] ?? false;
-        check(typeof value === "boolean", name, "true or false", value, TypeError);
+        check(typeof value === "boolean", name, "a boolean", value, TypeError);
         if (value) set |= flag;
     }
     const bits = Array.from(methods, (name) => 1 << methodNumber(name)).reduce((all, bit) => all | bit, 0);

@@ -169,7 +169,10 @@ export declare class Springs {
     /** see Spring.clamp */
     clamp: boolean;
 
-    /** Called for each value that comes to rest on its target, after the step. */
+    /**
+     * Called for each value that comes to rest on its target, after the step. If a call throws, the others follow, and step() or
+     * finish() then throws the first error.
+     */
     onRest: ((i: number, springs: Springs) => void) | null;
 
     /** Whether value i is at rest on its target. A property of Spring, and a method here. */
@@ -178,7 +181,7 @@ export declare class Springs {
     /** Changes the options that are given, as Spring.set(). */
     set(options: SpringsChanges): void;
 
-    /** Places all values on their targets. */
+    /** Places all values on their targets. If a target is not finite, that value keeps its state, and finish() throws a RangeError. */
     finish(): void;
 
     /**

@@ -18,6 +18,9 @@ const checkNotNegative = (name, value) =>
 const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 
+export const checkOnRest = (onRest) =>
+    check(onRest === null || typeof onRest === "function", "onRest", "a function or null", onRest, TypeError);
+
 /** The decay rate of the slowest mode, in units of omega. */
 const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + sqrt(ratio - 1) * sqrt(ratio + 1)));
 
@@ -60,10 +63,9 @@ export function merged(options, before) {
  */
 export function settings(options, before = {}, others = ["restDelta", "restSpeed", "clamp", "onRest"]) {
     const given = merged(options, before);
-    const { restDelta, restSpeed, onRest = null } = given;
+    const { restDelta, restSpeed, clamp = false, onRest = null } = given;
     checkNotNegative("restDelta", restDelta ?? 0);
     checkNotNegative("restSpeed", restSpeed ?? 0);
-    check(onRest === null || typeof onRest === "function", "onRest", "a function or null", onRest, TypeError);
     const way = wayOf(given) ?? "duration";
     const [omegaOf, second] = ways[way];
     const possible = [way, ...ways[way].slice(1), ...others];
@@ -74,6 +76,8 @@ export function settings(options, before = {}, others = ["restDelta", "restSpeed
             `one of ${possible.join(", ")}`,
             name,
         );
+    check(typeof clamp === "boolean", "clamp", "a boolean", clamp, TypeError);
+    checkOnRest(onRest);
     let { stiffness, damping, mass = 1 } = given;
     if (omegaOf) {
         const { [way]: first = 0.5, [second]: shape = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = given;

@@ -28,8 +28,9 @@ const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
 const mismatch = 14;
-// Words of the header of a state from the third on: "ends" of links, and with colliders, arrays of particles.
-const headers = "precision,axes,flags,methods,colliders,particles,links,weightedLinks,ends,force".split(",");
+// Words of the header of a state from the second on: "ends" of links, and with colliders, arrays of particles.
+const headers =
+    "version,precision,axes,flags,methods,colliders,particles,links,weightedLinks,ends,force".split(",");
 const stepFailures = {
     [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
     [unstable]: ["a particle would be faster than maxSpeed, or not finite", "SPRING_EUNSTABLE"],
@@ -293,7 +294,7 @@ export class Scene {
             if (status === mismatch) {
                 const own = new Uint32Array(this.save().buffer, 0, 24);
                 const its = memory.uint32(pointer, 24);
-                const differs = (_, k) => own[2 * k + 4] !== its[2 * k + 4]; // low halves of words
+                const differs = (_, k) => own[2 * k + 2] !== its[2 * k + 2]; // low halves of words
                 const other = headers.filter(differs).join(", ") || "damping";
                 what = `the state of a scene with this definition, not with other ${other}`;
             }

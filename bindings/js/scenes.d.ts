@@ -85,7 +85,9 @@ export interface LinkArrays {
 
 /**
  * Adds forces to force[axis][particle] [N] at the time t [s]. It must depend only on its arguments and on data that has not
- * changed since `scene.force` was set. It must not call its own scene. If it throws, the call fails and the scene stays as it was.
+ * changed since `scene.force` was set. It must not call its own scene. It should not create scenes or grids, or copy arrays of
+ * other scenes: if the memory of the WebAssembly grows meanwhile, the arrays are lost. If that happens, if it throws, or if it is
+ * async, the call fails and the scene stays as it was.
  */
 export type Force = (
     t: number,
@@ -128,7 +130,10 @@ export interface Impulse {
 export type Collider =
     | (Body & {
           shape: "plane";
-          /** out of the body; of any length; default [0, 1, 0] */
+          /**
+           * out of the body; of any length; default [0, 1, 0]. If the square of its length differs from 1 by at most 1e-15, it is
+           * used as it is, so setColliders(getColliders()) does not change it.
+           */
           normal?: ArrayLike<number>;
       })
     | (Body & {
@@ -391,8 +396,9 @@ export declare class Scene {
     save(): Uint8Array;
     /**
      * Loads a state that was saved anywhere, from a scene of the same definition, which then continues bit-identically. It
-     * throws if the state is damaged or does not fit. Values that it cannot check must be equal: drag, maxSpeed, particleRadius
-     * and the force; also masses, pinned particles and link values, unless the scene is editable. Frames start anew.
+     * throws if the state is damaged or does not fit, and names what differs. Values that it cannot check must be equal: drag,
+     * maxSpeed, particleRadius and the force; also masses, pinned particles and link values, unless the scene is editable. Frames
+     * start anew.
      */
     load(state: Uint8Array): void;
     /** Sets the time [s]. Colliders stay where they are. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One value that follows a target: spring_follow() without a load.
 import { abs, epsilon, min, PI } from "./elementary.js";
-import { checkFinite, inspected, isNumber, settings, sizeOf } from "./options.js";
+import { checkFinite, checkOnRest, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
 import { restTime, turningTime } from "./settling.js";
 import { changed } from "./watch.js";
@@ -17,8 +17,8 @@ export class Spring {
     #size = 0; // of the motion since the target or the velocity was set
     #finished = null; // the promise
     #finish;
+    #onRest = null;
     clamp = false;
-    onRest = null;
 
     constructor(value = 0, options = {}) {
         checkFinite("value", value);
@@ -87,6 +87,15 @@ export class Spring {
     get finished() {
         if (this.#settled) return Promise.resolve();
         return (this.#finished ??= new Promise((resolve) => (this.#finish = resolve)));
+    }
+
+    get onRest() {
+        return this.#onRest;
+    }
+
+    set onRest(onRest) {
+        checkOnRest(onRest);
+        this.#onRest = onRest;
     }
 
     set(options) {

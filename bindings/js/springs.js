@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Many values, each with its own target: spring_batch_follow_moving() without a load.
-import { check, checkFinite, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
+import { check, checkFinite, checkOnRest, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
 import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
 import { changed, moves } from "./watch.js";
@@ -43,8 +43,8 @@ export class Springs {
     #failed = -1; // first value that has kept its state in a step
     #steered = false; // whether targets may have velocities
     #rested = []; // values that came to rest in a step
+    #onRest = null;
     clamp = false;
-    onRest = null;
 
     constructor(count, options = {}) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
@@ -91,6 +91,15 @@ export class Springs {
 
     #rests(i) {
         return this.#value[i] === this.#target[i] && this.#velocity[i] === 0 && this.#targetVelocity[i] === 0;
+    }
+
+    get onRest() {
+        return this.#onRest;
+    }
+
+    set onRest(onRest) {
+        checkOnRest(onRest);
+        this.#onRest = onRest;
     }
 
     set(options) {

@@ -477,6 +477,122 @@ await test("animate: changes and errors in callbacks", () => {
         refused(() => it.animate(none, () => {}), "TypeError: spring must be a Spring or Springs, got...");
 });
 
+/** Springs and ways to set their targets: alike for animate(). */
+const kinds = {
+    Spring: (options) => {
+        const one = new Spring(0, options);
+        return [one, (target) => (one.target = target), () => one.value];
+    },
+    Springs: (options) => {
+        const many = new Springs(1, options);
+        return [many, (target) => (many.target[0] = target), () => many.value[0]];
+    },
+};
+
+await test("animate: a frame in which onRest throws is drawn, and each value is told", () => {
+    const thrown = [];
+    globalThis.reportError = (error) => thrown.push(error.message);
+    for (const reduced of [false, true]) {
+        globalThis.matchMedia = () => ({ matches: reduced });
+        for (const [kind, make] of Object.entries(kinds)) {
+            const it = stage();
+            const [spring, aim] = make({ duration: 0.3 });
+            spring.onRest = () => {
+                throw new Error("rested");
+            };
+            let drawn;
+            it.animate(spring, (value) => (drawn = kind === "Spring" ? value : value[0]));
+            aim(7);
+            it.run();
+            assert.deepStrictEqual([drawn, thrown.splice(0)], [7, ["rested"]], `${kind} ${reduced}`);
+            assert.strictEqual(it.callback, null);
+        }
+    }
+    delete globalThis.matchMedia;
+    delete globalThis.reportError;
+    const told = [];
+    const many = new Springs(3, { duration: 0.3, onRest: (i) => refuse(told.push(i)) });
+    const refuse = (count) => {
+        throw new Error(`value ${count}`);
+    };
+    many.target.fill(1);
+    assert.throws(() => many.step(100), /value 1/);
+    many.target.fill(2);
+    assert.throws(() => many.finish(), /value 4/);
+    assert.deepStrictEqual(told, [0, 1, 2, 0, 1, 2]);
+});
+
+await test("animate: a spring that a callback of another one stops stays where it is", () => {
+    for (const make of Object.values(kinds))
+        for (const when of ["draw", "onRest"]) {
+            const it = stage();
+            const lead = new Spring(0, { duration: 0.3 });
+            const [other, aim, valueOf] = make({ duration: 0.3 });
+            let draws = 0;
+            let before;
+            const end = () => {
+                before = valueOf();
+                stop();
+            };
+            if (when === "onRest") lead.onRest = end;
+            it.animate(lead, (value) => when === "draw" && value > 0.5 && before === undefined && end());
+            const stop = it.animate(other, () => (draws += before !== undefined));
+            other.onRest = () => draws++;
+            lead.target = 1;
+            aim(1);
+            it.run();
+            assert.deepStrictEqual([valueOf(), draws], [before, 0], when);
+            assert(before > 0 && before < 1 && lead.settled);
+        }
+});
+
+await test("animate: a target near the value that a callback sets is reached", () => {
+    for (const [kind, make] of Object.entries(kinds))
+        for (const when of ["draw", "onRest"]) {
+            const it = stage();
+            const [spring, aim, valueOf] = make({ restDelta: 0.5, restSpeed: 10 });
+            let rests = 0;
+            const again = () => valueOf() === 100 && aim(100.4);
+            spring.onRest = () => ++rests && when === "onRest" && again();
+            it.animate(spring, () => when === "draw" && again());
+            aim(100);
+            assert(it.run() < 200);
+            assert.deepStrictEqual([valueOf(), rests], [100.4, 2], `${kind} ${when}`);
+        }
+});
+
+await test("animate: one value of Springs that cannot move does not stop the others", () => {
+    const thrown = [];
+    globalThis.reportError = (error) => thrown.push(error.message);
+    const bad = { target: NaN, velocity: Infinity, targetVelocity: -Infinity };
+    for (const reduced of [false, true])
+        for (const [name, number] of Object.entries(bad)) {
+            if (reduced && name === "velocity") continue; // finish() does not need it
+            globalThis.matchMedia = () => ({ matches: reduced });
+            const [it, alone] = [stage(), stage()];
+            const [many, others] = [new Springs(3, { duration: 0.3 }), new Springs(3, { duration: 0.3 })];
+            const [drawn, wanted] = [[], []];
+            it.animate(many, ([a, , c], { target }) => drawn.push([a, c, target[0]]));
+            alone.animate(others, ([a, , c], { target }) => wanted.push([a, c, target[0]]));
+            many.target.set([1, 5, 2]);
+            others.target.set([1, 0, 2]);
+            many[name][1] = number;
+            assert.strictEqual(it.run(), alone.run());
+            assert.deepStrictEqual(drawn, wanted, `${name} ${reduced}`);
+            assert.deepStrictEqual(drawn.at(-1), [1, 2, 1]);
+            const message = `${name}[1] must be a finite number, got ${number}`;
+            assert.deepStrictEqual(thrown.splice(0), [message]);
+            assert.deepStrictEqual([many.value[1], many[name][1]], [0, number], "it keeps its state");
+            if (name !== "velocity") refused(() => many.finish(), `RangeError: ${message}`);
+            assert.strictEqual(many.value[1], 0);
+            many[name][1] = 0;
+            it.run();
+            assert.strictEqual(many.value[1], many.target[1], "it moves on");
+        }
+    delete globalThis.matchMedia;
+    delete globalThis.reportError;
+});
+
 await test("animate: reduced motion jumps, or as told", async () => {
     const it = stage();
     globalThis.matchMedia = () => ({ matches: true });
@@ -507,14 +623,15 @@ await test("animate: without requestAnimationFrame it uses a timer", async () =>
     stop();
 });
 
-await test("linear() of CSS: within 0.2 % of the way", () => {
-    for (let i = 0; i < 300; i++) {
+await test("linear() of CSS: within 0.2 % of the way in the range of its declaration", () => {
+    for (let i = 0; i < 400; i++) {
         const options =
             i < 20
                 ? { duration: 0.5, bounce: -0.95 + 0.08 * i }
                 : { hertz: logarithmic(0.1, 20), dampingRatio: logarithmic(0.1, 5) };
-        const ratio = options.dampingRatio ?? 1 - options.bounce;
-        const velocity = i % 3 || ratio > 1.5 ? 0 : uniform(-2, 2) * 2 * Math.PI * (options.hertz ?? 2);
+        const ratio =
+            options.dampingRatio ?? (options.bounce < 0 ? 1 / (1 + options.bounce) : 1 - options.bounce);
+        const velocity = i % 2 || ratio > 2 ? 0 : uniform(-12, 12) * (options.hertz ?? 2);
         const { duration, easing } = linear(options, velocity);
         const points = /^linear\((.*)\)$/
             .exec(easing)[1]
@@ -541,6 +658,12 @@ await test("linear() of CSS: within 0.2 % of the way", () => {
             `TypeError: an option must be one of hertz, dampingRatio, got "${option}"`,
         );
     refused(() => linear({ duration: 1, bounce: 1 }), "RangeError: the spring does not settle");
+    for (const [options, velocity] of [
+        [{ duration: 0.5, bounce: 0.999 }],
+        [{ hertz: 1, dampingRatio: 0.1 }, 1e4],
+        [{ hertz: 1, dampingRatio: 10 }, -200],
+    ])
+        refused(() => linear(options, velocity), "RangeError: the motion is too fast for an easing...");
 });
 
 await test("every spring lands exactly on its target", () => {
@@ -758,6 +881,19 @@ await test("errors name field and value", () => {
         "RangeError: restSpeed must be a finite number >= 0, got NaN",
     );
     refused(spring({ ...good, onRest: 3 }), "TypeError: onRest must be a function or null, got 3");
+    for (const Kind of [Spring, Springs]) {
+        const one = new Kind(1);
+        for (const [wrong, wanted] of [
+            [{ clamp: [true] }, "TypeError: clamp must be a boolean, got true"],
+            [{ clamp: 1 }, "TypeError: clamp must be a boolean, got 1"],
+            [{ onRest: [() => {}] }, "TypeError: onRest must be a function or null, got () => {}"],
+        ]) {
+            refused(() => new Kind(1, wrong), wanted);
+            refused(() => one.set(wrong), wanted);
+        }
+        refused(() => (one.onRest = 5), "TypeError: onRest must be a function or null, got 5");
+        assert.deepStrictEqual([one.clamp, one.onRest], [false, null]);
+    }
     refused(() => new Spring(NaN), "RangeError: value must be a finite number, got NaN");
     const s = new Spring(1, good);
     s.velocity = 2;

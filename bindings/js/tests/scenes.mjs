@@ -30,7 +30,8 @@ const {
     methods: offered,
 } = await import("../scenes.js");
 const { ready, Scene, soften, TENSION_ONLY, TETHER, tethers } = await import("../scenes.js");
-const { library } = await import("../module.js");
+const { borrowed, library, memory } = await import("../module.js");
+const { lendColliders } = await import("../definition.js");
 const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
 
 function offers(definition, method) {
@@ -271,6 +272,11 @@ await test("states that are damaged or of other scenes are refused, and change n
     const scene = rope();
     scene.advance("leapfrog", 1e-3, 10);
     const state = scene.save();
+    assert.equal(
+        new Uint32Array(state.buffer)[8],
+        0,
+        "without a force, no flag of forces: C has none either",
+    );
     const damaged = state.slice();
     damaged[210] ^= 4;
     const refuse = (what, ...states) => {
@@ -284,10 +290,22 @@ await test("states that are damaged or of other scenes are refused, and change n
         /RangeError: state must be an undamaged state, got "?\d+ bytes/,
         ...[damaged, state.slice(1), state.slice(0, -8), new Uint8Array(0)],
     );
-    refuse(
-        /RangeError: state must be the state of a scene with this definition/,
-        rope({ editable: true }).save(),
-    );
+    const two = { a: 0, b: 4, rest: 2, stiffness: 300 };
+    for (const [more, other] of [
+        [{ editable: true }, "flags"],
+        [{ heldForces: true, methods: ["leapfrog"] }, "flags, methods"],
+        [{ force: () => {} }, "flags, force"],
+        [{ axes: 1, gravity: [0], position: [0, 1, 2, 3, 4] }, "axes"],
+        [{ links: [two] }, "links, ends"],
+        [{ colliders: 3 }, "colliders"],
+        [{ links: { ...scene.getLinks(), damping: 0 } }, "damping"],
+    ])
+        refuse(
+            new RegExp(
+                `state must be the state of a scene with this definition, not with other ${other}, got`,
+            ),
+            rope(more).save(),
+        );
     assert.throws(() => rope({ colliders: 1 }).load(state), RangeError);
     for (const wrong of [null, "text", [...state], new Float64Array(4)])
         assert.throws(() => scene.load(wrong), TypeError);
@@ -717,6 +735,45 @@ await test("colliders at their present places", () => {
     other.free();
 });
 
+await test("normals: unit vectors of any length, which stay as they are", () => {
+    const scene = new Scene({ position: [9, 9, 9], colliders: 1 });
+    const normalOf = (normal) =>
+        borrowed((take) => [...memory.float64(lendColliders(take, [{ shape: "plane", normal }]) + 56, 3)]);
+    for (let i = 0; i < 3000; i++) {
+        const size = 10 ** (chance(0.5) ? uniform(-307, 307) : uniform(-2, 2));
+        const normal = Array.from({ length: chance(0.3) ? 2 : 3 }, () => size * uniform(-1, 1));
+        const [x, y, z = 0] = normal;
+        const unit = normalOf(normal);
+        const q = x * x + y * y + z * z;
+        if (q > 1e-280 && q < 1e280)
+            assert.deepEqual(
+                unit,
+                [x, y, z].map((each) => each / Math.sqrt(q)),
+            );
+        const [u, v, w] = [x / size, y / size, z / size]; // moderate
+        unit.forEach((each, k) =>
+            assert.ok(Math.abs(each - [u, v, w][k] / Math.sqrt(u * u + v * v + w * w)) < 1e-15),
+        );
+        assert.deepEqual(normalOf(unit), unit);
+        if (i % 10) continue;
+        scene.setColliders([{ shape: "plane", normal }]);
+        const colliders = scene.getColliders();
+        assert.deepEqual(colliders[0].normal, unit);
+        scene.setColliders(colliders);
+        assert.deepEqual(scene.getColliders(), colliders);
+    }
+    const tiny = Number.MIN_VALUE;
+    assert.deepEqual(normalOf([0, -tiny, 0]), [0, -1, 0]);
+    for (const normal of [
+        [0, 0],
+        [NaN, 1],
+        [0, Infinity, 0],
+        [1e200, -Infinity],
+    ])
+        refused(() => normalOf(normal), "RangeError: colliders[0].normal must be a direction, got...");
+    scene.free();
+});
+
 await test("contacts: radius, friction and mask of particles, mask of colliders", () => {
     const definition = {
         position: [0, 1, 0, 2, 1, 0, 4, 1, 0, 6, 1, 0],
@@ -822,6 +879,18 @@ await test("contacts: shapes, motion, friction, which touch", () => {
             "RangeError: colliders[0].restitution must be a number from 0 to 1, got 2",
         ],
         [
+            { shape: "box", half: [-1, 1, 1] },
+            'RangeError: colliders[0].half must be numbers >= 0, got "-1,1,1"',
+        ],
+        [
+            { shape: "plane", normal: [0, 0, 1] },
+            'RangeError: colliders[0].normal must be a direction in the plane of the scene, got "0,0,1"',
+        ],
+        [
+            { shape: "plane", friction: -1 },
+            "RangeError: colliders[0].friction must be a finite number >= 0...",
+        ],
+        [
             { shape: "box", half: [1, 1], axes: [1, 0, 0, 1, 0, 0, 0, 0, 1] },
             'RangeError: colliders[0].axes must be orthonormal to 1e-3, got "1,0,0,1,0,0,0,0,1"',
         ],
@@ -883,11 +952,27 @@ await test("a callback: forces by position and velocity; what it throws; it cann
     assert.ok(Math.abs(scene.get("velocity")[0] + 4e-3) < 1e-8);
     const hash = hashOf(scene);
     scene.force = (t) => {
-        new Scene({ ...grid({ count: [200, 200], spacing: 1, stiffness: 1 }) }).free(); // memory grows
         if (t > 0.002) throw new SyntaxError("mine");
     };
     assert.throws(() => scene.advance("leapfrog", 1e-3, 5), { name: "SyntaxError", message: "mine" });
     assert.equal(hashOf(scene), hash);
+    const { buffer } = library().memory;
+    const size = Math.ceil(Math.sqrt(buffer.byteLength / 100));
+    scene.force = (t, x, [fx]) => {
+        fx.fill(1);
+        if (t > 0.002) new Scene({ ...grid({ count: [size, size], spacing: 1, stiffness: 1 }) }).free();
+    };
+    refused(
+        () => scene.advance("leapfrog", 1e-3, 5),
+        "TypeError: memory grew during force: create scenes...",
+    );
+    assert.notEqual(library().memory.buffer, buffer);
+    assert.equal(hashOf(scene), hash);
+    scene.advance("leapfrog", 1e-3, 5); // there is enough memory now
+    scene.force = async () => {};
+    const moved = hashOf(scene);
+    refused(() => scene.advance("leapfrog", 1e-3), "TypeError: force must be synchronous, got...");
+    assert.equal(hashOf(scene), moved);
     for (const call of [() => scene.time, () => scene.free(), () => scene.advance("leapfrog", 1)]) {
         scene.force = call;
         assert.throws(() => scene.advance("leapfrog", 1e-3), /must not call its own scene/);
@@ -968,6 +1053,8 @@ await test("errors name field and value, and change nothing", () => {
         [{ axes: 1, tensionOnly: true }, "TypeError: tensionOnly requires 2 or 3 axes"],
         [{ colour: 1 }, "TypeError: the option colour is unknown"],
         [{ force: 1 }, "TypeError: force must be a function or null, got 1"],
+        [{ tensionOnly: "no" }, 'TypeError: tensionOnly must be a boolean, got "no"'],
+        [{ forceUsesVelocity: 1 }, "TypeError: forceUsesVelocity must be a boolean, got 1"],
         [{ component: 2 }, "RangeError: component must be an integer from 0 to 1, got 2"],
         [
             { links: [{ a: 0, b: 2, rest: 1, stiffness: 1 }] },
@@ -1015,6 +1102,11 @@ await test("errors name field and value, and change nothing", () => {
             () => one.frame("leapfrog", 1, 1, 0),
             "RangeError: mostSteps must be an integer >= 1 and < 2^32, got 0",
         ],
+        [() => one.frame(), "TypeError: elapsed must be a finite number, got undefined"],
+        [() => one.frame(undefined, { dt: 1 }), "TypeError: elapsed must be a finite number, got undefined"],
+        [() => one.frame("0.1"), 'TypeError: elapsed must be a finite number, got "0.1"'],
+        [() => one.frame("rk5", 1, 1), "TypeError: method must be one of..."],
+        [() => one.frame(0.1, { dt: 1e-12 }), "RangeError: dt must be at least 1e-10 without mostSteps..."],
         [() => one.frame("leapfrog", 1, 1, { most: 3 }), "TypeError: the option most is unknown"],
         [() => one.frame("leapfrog", 1, 1, { move: 3 }), "TypeError: move must be a function or null, got 3"],
         [() => one.setLink(0, { stifness: 3 }), "TypeError: the option stifness is unknown"],
@@ -1039,6 +1131,64 @@ await test("errors name field and value, and change nothing", () => {
     one.free();
     one.free();
     refused(() => one.time, "TypeError: the scene has been freed");
+});
+
+await test("edits that are refused name field, value and index, and change nothing", () => {
+    const scene = rope({ editable: true, drag: 1 });
+    scene.frame("leapfrog", 1e-3, 0.0105);
+    const all = () => [...scene.save(), ...scene.positions, ...scene.get("velocity")];
+    const before = all();
+    const links = (field, i, value) => {
+        const changed = scene.getLinks();
+        changed[field][i] = value;
+        return () => scene.setLinks(changed);
+    };
+    const finite = "a finite number >= 0, also when it is divided by a mass";
+    const reciprocal = "a finite number > 0 with a finite reciprocal, also times stiffness or drag";
+    for (const [run, wanted] of [
+        [() => scene.setLink(3, { stiffness: -1 }), `stiffness of link 3 must be ${finite}, got -1`],
+        [links("rest", 2, NaN), "rest of link 2 must be a finite number >= 0, got NaN"],
+        [links("damping", 1, Infinity), `damping of link 1 must be ${finite}, got Infinity`],
+        [links("stiffness", 3, 1e308), `stiffness of link 3 must be ${finite}, got 1e+308`],
+        [links("damping", 0, 1e308), `damping of link 0 must be ${finite}, got 1e+308`],
+        [links("ends", 2, 3), 'ends of link 1 must be 1 and 2, got "3, 2"'],
+        [() => scene.setLink(2, { b: 4 }), 'ends of link 2 must be 2 and 3, got "2, 4"'],
+        [() => scene.setMass([2, 1e-320], 1), `mass[1] must be ${reciprocal}, got 1e-320`],
+        [() => scene.setMass([2, 3, 1e-307, 1], 1), `mass[2] must be ${reciprocal}, got 1e-307`],
+    ]) {
+        refused(run, `RangeError: ${wanted}`);
+        assert.deepEqual(all(), before);
+    }
+    scene.free();
+});
+
+await test("scenes above 2 GiB of memory", () => {
+    const program = `import { grid, Scene } from ${JSON.stringify(new URL("../scenes.js", import.meta.url))};
+        import { library } from ${JSON.stringify(new URL("../module.js", import.meta.url))};
+        const run = () => {
+            const scene = new Scene({ ...grid({ count: [9, 9], spacing: 1, stiffness: 1 }), gravity: [1, 2, 3],
+                editable: true, colliders: 1, force: (t, x, [fx]) => fx.fill(1) });
+            scene.setColliders([{ shape: "plane" }]);
+            scene.frame(0.1);
+            const saved = scene.snapshot();
+            scene.advance("leapfrog", 1e-3, 10);
+            const state = scene.save();
+            scene.restore(saved);
+            scene.load(state);
+            scene.tear(9);
+            return [...scene.positions, ...scene.get("velocity"), ...scene.save(), scene.getLink(3).rest].join();
+        };
+        const below = run();
+        const { malloc } = library();
+        if (malloc(2 ** 31) === 0) console.log("no memory");
+        else {
+            for (let bytes = 2 ** 24; bytes >= 8; bytes /= 2) while (malloc(bytes) > 0); // all that is below
+            console.log(run() === below, malloc(8) < 0);
+        }`;
+    const how = ["--input-type=module", "--eval", program];
+    const { stdout, stderr } = spawnSync(process.execPath, how, { encoding: "utf8" });
+    if (stdout === "no memory\n") return note("this machine has no 2 GiB for them");
+    assert.equal(stdout + stderr, "true true\n");
 });
 
 await test("an explosion throws with a code, and the state is the one before", () => {
