@@ -32,7 +32,7 @@
  *    its user data are copied unchanged.
  *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
  *    accept a const scene, while no thread changes it.
- *  - No function needs more than 16 KiB of the stack, compiled by gcc 12 or clang 14 with optimisation
+ *  - No function needs more than 16 KiB of the stack, compiled by gcc 12, gcc 14 or clang 14 with optimisation
  *    (tests/scene/test_stack.c). At most 16 KiB are in use when a callback is called.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the
  *    callback are.

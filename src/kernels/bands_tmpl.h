@@ -205,9 +205,10 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const size_t stride = s->stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
     const int8_t *const occupied = band->occupied + slot;
-    const scalar *const stiffness = band->stiffness + slot * stride_c,
-                        *const rest_length = band->rest + slot * stride_c, *const roots = band->root + slot;
-    scalar *const scales = band->direction_scale + slot, *const turnings = band->turning + slot;
+    const scalar *const stiffness = band->stiffness + slot * stride_c, *const rest_length =
+                                                                           band->rest + slot * stride_c;
+    scalar *const scales = band->direction_scale + slot, *const turnings = scales + s->turning_offset;
+    const scalar *const roots = scales + s->root_offset;
     const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
     const size_t together = links_together(axes);
     size_t j = 0;
@@ -267,7 +268,7 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
 SPRING_NOINLINE void freezing_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x,
                                              const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    (void)s, (void)axis;
+    (void)axis;
     const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const size_t together = links_together(1) * lanes;
@@ -275,7 +276,7 @@ SPRING_NOINLINE void freezing_tile_on_1_axis(const scene_links *s, const scene_b
         const ptrdiff_t i = slot + (ptrdiff_t)j;
         const lane_mask joined = vec_load_mask(band->occupied + i);
         const real k = vec_load(band->stiffness + i * stride_c), rest = vec_load(band->rest + i * stride_c);
-        const real root = vec_load(band->root + i);
+        const real root = vec_load(band->direction_scale + s->root_offset + i);
         const scalar *const at = x + t + j, *const with = v + t + j;
         const real delta = vec_load(at + offset) - vec_load(at), relative = vec_load(with + offset) - vec_load(with);
         vec_store(band->direction_scale + i, select_real(joined, root, splat(0)));
@@ -302,8 +303,8 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
 {
     const size_t stride = s->stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const ptrdiff_t offset = band->offset;
-    const scalar *const scales = band->direction_scale + (t - band->start), *const turnings =
-                                                                                band->turning + (t - band->start);
+    const scalar *const scales = band->direction_scale + (t - band->start);
+    const scalar *const turnings = scales + s->turning_offset;
     const int8_t *const occupied = band->occupied + (t - band->start);
     const scalar weight = axes > 1 ? s->turning_weight : 0;
     const size_t together = links_together(axes);
@@ -362,7 +363,7 @@ SPRING_NOINLINE void replace_linear_forces(const scene_links *s, const scene_ban
         const lane_mask joined = vec_load_mask(band->occupied + i);
         const real rest = vec_load(band->rest + number);
         const real k = s->terms == DAMPING_TERM ? splat(0) : vec_load(band->stiffness + number);
-        real c = frozen ? vec_load(band->root + i) : vec_load(band->damping + number);
+        real c = frozen ? vec_load(band->direction_scale + s->root_offset + i) : vec_load(band->damping + number);
         if (frozen)
             c *= c;
         SPRING_ROLLED
@@ -391,7 +392,8 @@ SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band
     const uint32_t axes = s->axes;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const bool stiff = s->terms != DAMPING_TERM, damped = s->terms != STIFFNESS_TERM;
-    const scalar *const root = s->terms > STIFFNESS_AND_DAMPING_TERM ? band->root + slot : NULL;
+    const scalar *const root =
+        s->terms > STIFFNESS_AND_DAMPING_TERM ? band->direction_scale + s->root_offset + slot : NULL;
     const scalar *const stiffness = band->stiffness + slot;
     const scalar *const damping = damped && root == NULL ? band->damping + slot : root;
     const int8_t *const occupied = band->occupied + slot;

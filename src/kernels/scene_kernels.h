@@ -39,15 +39,13 @@ typedef struct scene_band {
     const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end, on
                                      several axes if it pulls and never pushes */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
-    /* Of an exponential kick, by slot; NULL: the scene has none. */
-    /* [(N s/m)^(1/2)] square root of the damping, which may be saturated; negative for rest length 0 on several axes */
-    const scalar *root;
-    scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act, or its root is negative */
-    scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
-    size_t ring_start;       /* of its ring of forces in scene_forces.rings */
-    ptrdiff_t ring;          /* slots of the ring, a multiple of tile: at least offset + tile (with three
+    /* Of an exponential kick, by slot: root/length, on one axis root; 0: the link does not act, or its root is negative.
+       NULL: the scene has none. Roots and turning terms are root_offset and turning_offset of scene_links farther. */
+    scalar *direction_scale;
+    size_t ring_start; /* of its ring of forces in scene_forces.rings */
+    ptrdiff_t ring;    /* slots of the ring, a multiple of tile: at least offset + tile (with three
                                 points, 2 offset + tile), or all slots of the band */
-    ptrdiff_t back;          /* offset modulo ring */
+    ptrdiff_t back;    /* offset modulo ring */
 } scene_band;
 
 /* Links that belong to no band. */
@@ -55,8 +53,10 @@ typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
     const scalar *stiffness, *rest, *damping; /* as in scene_band */
+    /* [(N s/m)^(1/2)] square root of the damping, which may be saturated; negative for rest length 0 on several axes */
     const scalar *root;
-    scalar *direction_scale, *turning;
+    scalar *direction_scale; /* as in scene_band */
+    scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
 } unbanded_links;
 
 /* A weighted link that is not in a band. Its vector is the sum of weight[i] (x[particle[i]] - x[particle[0]]) for i > 0.
@@ -69,7 +69,7 @@ typedef struct stored_weighted {
     uint8_t place[4];                           /* index of each particle in spring_weighted_link */
     bool banded;                                /* a band computes its forces */
     scalar weight[4], rest, stiffness, damping; /* also in a saved state */
-    scalar root, direction_scale, turning;      /* as in scene_band */
+    scalar root, direction_scale, turning;      /* as in unbanded_links */
 } stored_weighted;
 
 /* Whether a weighted link has a force that no band computes. */
@@ -92,7 +92,8 @@ typedef struct scene_links {
     bool tension_only;              /* on two or three axes, some links pull and never push */
     bool isotropic;                 /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
-    scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
+    ptrdiff_t root_offset, turning_offset; /* elements from scene_band.direction_scale to root, and to turning */
+    scalar turning_time;                   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
     scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */
 } scene_links;
 

@@ -45,7 +45,7 @@ typedef enum scene_array {
     ARRAY_WEIGHTED,       /* stored_weighted */
     ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
     ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
-    ARRAY_ROOTS,   /* scene_band.root and unbanded_links.root, by slot like ARRAY_SLOTS */
+    ARRAY_ROOTS,   /* unbanded_links.root, for bands too, by slot like ARRAY_SLOTS */
     ARRAY_FROZEN,  /* direction_scale, then turning, likewise */
     ARRAY_KICK,    /* see kick_storage() */
     ARRAY_PRESSED, /* pressed_particle: see exponential_kick.h */

@@ -164,9 +164,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             .stiffness = stiffness + b->coefficients,
             .rest = rest + b->coefficients,
             .damping = damped ? damping + b->coefficients : NULL,
-            .root = root != NULL ? root + b->slots : NULL,
             .direction_scale = frozen != NULL ? frozen + b->slots : NULL,
-            .turning = frozen != NULL ? frozen + all_slots + b->slots : NULL,
             .ring_start = b->ring_start,
             .ring = (ptrdiff_t)b->ring,
             .back = (ptrdiff_t)(b->offset % b->ring),
@@ -197,6 +195,8 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
         .nonlinear = s->nonlinear > 0,
         .tension_only = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
         .isotropic = s->isotropic_links > 0,
+        .root_offset = frozen != NULL ? root - frozen : 0,
+        .turning_offset = (ptrdiff_t)all_slots,
     };
 }
 
