@@ -60,7 +60,7 @@ export function animator({
     function advance(entry, dt, reduced) {
         const { spring, draws } = entry;
         entry.stale = false;
-        let failure = null; // message of a value that stays where it is, which would fail in each frame; "": of onRest()
+        let failure = null; // the message of step(), which is reported once if it fails in each frame; "": onRest() failed
         try {
             if (reduced && !entry.runs) spring.finish();
             else spring.step(dt);

@@ -28,7 +28,7 @@ const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
 const mismatch = 14;
-// Words of the header of a state from the second on: "ends" of links, and with colliders, arrays of particles.
+// Words of the header of a saved state, from its second on. ends: a hash of links, and with colliders of arrays of particles
 const headers =
     "version,precision,axes,flags,methods,colliders,particles,links,weightedLinks,ends,force".split(",");
 const stepFailures = {
@@ -506,7 +506,7 @@ export class Scene {
             const velocities = this.#usesVelocity ? arrays(velocity) : undefined;
             const result = this.#force(t, arrays(position), forces, velocities);
             check(typeof result?.then !== "function", "force", "synchronous", result, TypeError);
-            // Forces that were written after that would be lost.
+            // Forces that were written after memory grew are lost.
             if (this.#views.buffer !== library().memory.buffer)
                 throw new TypeError("memory grew during force: create scenes and grids outside of it");
         } catch (thrown) {

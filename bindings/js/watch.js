@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Listeners of springs that may begin to move. The loop of animate.js is one.
 
-/** The name of a method of Springs: whether a value moves that steps can advance. */
+/** The name of a method of Springs that returns whether steps would still change a value. */
 export const moves = Symbol();
 
 const listeners = new WeakMap();

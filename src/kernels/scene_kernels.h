@@ -40,7 +40,8 @@ typedef struct scene_band {
                                      several axes if it pulls and never pushes */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
     /* Of an exponential kick, by slot: root/length, on one axis root; 0: the link does not act, or its root is negative.
-       NULL: the scene has none. Roots and turning terms are root_offset and turning_offset of scene_links farther. */
+       NULL: the scene has none. The root of a link is scene_links.root_offset elements farther, its turning term
+       scene_links.turning_offset. */
     scalar *direction_scale;
     size_t ring_start; /* of its ring of forces in scene_forces.rings */
     ptrdiff_t ring;    /* slots of the ring, a multiple of tile: at least offset + tile (with three

@@ -788,9 +788,11 @@ static void damped_link_at_rest(void)
             set(s, &floor, 1);
             run(s, with_contacts[m], dt, 10000);
             spring_scene_get(s, SPRING_POSITION, end, 0, 0, 2);
+            const bool rests = spring_scene_at_rest(s, 0.01, 0.05);
             free(s);
             const double excess = k * (rest - (end[4] - end[1])) / load - 1, bound = in_double ? 1e-9 : 2e-4;
             const double L = 2 * k / mass, expected = dt_G / 2 + dt * dt * L / 6;
+            CHECK(rests == (with_contacts[m] == SPRING_LEAPFROG), "the forces of RK4 are not in balance");
             if (with_contacts[m] == SPRING_LEAPFROG)
                 CHECK_BELOW(excess, bound, "rounding errors: leapfrog rests in equilibrium");
             else

@@ -63,8 +63,8 @@ def _work(count: int, kind: str = "uint32_t") -> Any:
 
 def _made(kind: np.dtype[np.void], call: Callable[[Any, Any], int], field: str, reason: str | None,
           **numbers: float) -> NDArray[np.void]:
-    """Return what a function of C makes that first counts. It is called with a pointer to links, and the count. If it
-    accepts none of its numbers >= 0, they are named, otherwise the field."""
+    """Return what a function of C makes that first counts. It is called with a pointer to links, and the count. An
+    error names the number that is negative or not finite, or else the field."""
     count = ffi.new("size_t *")
     c_name = "spring_link *" if kind is LINK else "spring_weighted_link *"
     result = np.empty(0, kind)
