@@ -425,7 +425,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    longer than twice its rest length, otherwise half of this;
  *  - with drag/mass of at least 0.1/s, up to 0.9 for soft bodies and sheets with shear springs while no link is longer
  *    than twice its rest length, and up to 0.5 for ropes and other nets;
- *  - half of these if links are tension-only;
+ *  - half of these if links are tension-only, where tethers do not count;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion (0.06 for more than a minute if links stretch by
  *    more than a quarter), and 0.1 for tension-only links in runs of up to a minute.
  * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
@@ -613,7 +613,8 @@ SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, con
  * Gets the colliders as they are now, with their present positions, axes, velocities and spins.
  *
  * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only, if each spin
- * acceleration is parallel to the spin. Otherwise their later rotation differs. Use the function to draw the colliders of a loaded state, or to change one collider and keep the others.
+ * acceleration is parallel to the spin. Otherwise their later rotation differs. Use the function to draw the colliders of
+ * a loaded state, or to change one collider and keep the others.
  *
  * @param[out]    out    may be NULL: only *count is written
  * @param[in,out] count  size of out; afterwards the number of colliders
