@@ -9,8 +9,8 @@
 
 typedef enum motion { FROM_REST, IN_MOTION } motion;
 
-/* A horizontal cloth that is pinned at two corners, or a rope with a heavy end, 1 m long; its stiffness and damping in units of a frame:
-   sqrt(L) = stiff/frame, damping = damped mass/frame. */
+/* A horizontal cloth that is pinned at two corners, or a rope with a heavy end, 1 m long; its stiffness and damping in
+   units of a frame: sqrt(L) = stiff/frame, damping = damped mass/frame. */
 static const double frame = 1.0 / 60;
 
 static void build_stiff(model *m, uint32_t side, bool rope, double stiff, double damped, motion how)
@@ -83,9 +83,9 @@ static double error_after(const model *m, int steps_per_frame)
     return error;
 }
 
-/* The scenes S1 (here smaller cloths, so that the reference takes seconds) and S2 of the study of stiff scenes, at two thirds of the stable number of steps and
-   at that number. The bounds are those of the study of the scheme, for the rope in motion with a margin for its random
-   velocities. */
+/* The scenes S1 (here smaller cloths, so that the reference takes seconds) and S2 of the study of stiff scenes, at two
+   thirds of the stable number of steps and at that number. The bounds are those of the study of the scheme, for the rope
+   in motion with a margin for its random velocities. */
 static void errors(void)
 {
     static model m;
