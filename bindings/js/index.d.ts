@@ -136,7 +136,7 @@ export declare class Spring {
     /** Ends a gesture: sets the velocity, and the target if it is given. */
     release(velocity: number, target?: number): void;
 
-    /** Ends the motion: places the value on its target. */
+    /** Ends the motion: places the value on its target, or with stiffness 0 where damping would stop it. */
     finish(): void;
 
     /**
@@ -181,7 +181,7 @@ export declare class Springs {
     /** Changes the options that are given, as Spring.set(). */
     set(options: SpringsChanges): void;
 
-    /** Places all values on their targets. If a target is not finite, that value keeps its state, and finish() throws a RangeError. */
+    /** Ends all motions, as finish() of Spring. If a target is not finite, that value keeps its state, and finish() throws a RangeError. */
     finish(): void;
 
     /**

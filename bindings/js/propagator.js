@@ -72,6 +72,12 @@ export class Propagator {
         return [half * (F * x + H * v), half * (G * v - omega2 * H * x)];
     }
 
+    /** Where a value ends: without stiffness where damping stops it, or where it is if nothing does. */
+    restPlace(x, v, target) {
+        const place = this.omega2 > 0 ? target : x + v / this.b / 2;
+        return abs(place) < Infinity ? place : x;
+    }
+
     /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - omega2 H x) about the target. */
     prepare(dt) {
         if (dt === this.dt) return;

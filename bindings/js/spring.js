@@ -4,7 +4,7 @@ import { abs, epsilon, min, PI } from "./elementary.js";
 import { checkFinite, checkOnRest, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
 import { restTime, turningTime } from "./settling.js";
-import { changed } from "./watch.js";
+import { changed, listener } from "./watch.js";
 
 export class Spring {
     #settings = {};
@@ -19,6 +19,7 @@ export class Spring {
     #finish;
     #onRest = null;
     clamp = false;
+    [listener] = null;
 
     constructor(value = 0, options = {}) {
         checkFinite("value", value);
@@ -121,7 +122,9 @@ export class Spring {
 
     finish() {
         if (this.#settled) return;
-        this.#place(this.#target);
+        this.#place(
+            this.#settings.p.restPlace(this.#value, this.#velocity - this.#targetVelocity, this.#target),
+        );
         changed(this);
     }
 

@@ -3,7 +3,7 @@
 import { check, checkFinite, checkOnRest, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
 import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
-import { changed, moves } from "./watch.js";
+import { changed, listener, moves } from "./watch.js";
 
 /** Settings of each value; if no option is an array, of all values. */
 function settingsOf(options, count) {
@@ -45,6 +45,7 @@ export class Springs {
     #rested = []; // values that came to rest in a step
     #onRest = null;
     clamp = false;
+    [listener] = null;
 
     constructor(count, options = {}) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
@@ -89,8 +90,14 @@ export class Springs {
         return this.#rests(i);
     }
 
+    #propagator(i) {
+        return (Array.isArray(this.#settings) ? this.#settings[i] : this.#settings).p;
+    }
+
+    /** Without stiffness, a value rests anywhere. */
     #rests(i) {
-        return this.#value[i] === this.#target[i] && this.#velocity[i] === 0 && this.#targetVelocity[i] === 0;
+        if (this.#velocity[i] !== 0 || this.#targetVelocity[i] !== 0) return false;
+        return this.#value[i] === this.#target[i] || !(this.#propagator(i).omega2 > 0);
     }
 
     get onRest() {
@@ -119,8 +126,9 @@ export class Springs {
                 if (this.#failed < 0) this.#failed = i;
                 continue;
             }
-            this.#value[i] = this.#target[i];
-            this.#velocity[i] = this.#targetVelocity[i];
+            const [x, v, speed] = [this.#value[i], this.#velocity[i], this.#targetVelocity[i]];
+            this.#value[i] = this.#propagator(i).restPlace(x, v - speed, this.#target[i]);
+            this.#velocity[i] = speed;
             if (this.#velocity[i] === 0) this.#rested.push(i);
         }
         changed(this);
@@ -176,7 +184,8 @@ export class Springs {
         if (failure) throw failure.error;
     }
 
-    /** A motion begins at a new target, and at a value on its target. Returns the largest size of a motion. */
+    /** A motion begins at a new target, at a value on its target, and without stiffness when it becomes faster.
+     *  Returns the largest size of a motion. */
     #measure(p, from, end) {
         const [value, velocity, target, speed] = [
             this.#value,
@@ -189,9 +198,11 @@ export class Springs {
         let largest = 0;
         for (let i = from; i < end; i++) {
             const goal = target[i];
-            if (goal !== targets[i] || (goal === value[i] && velocity[i] !== 0)) {
+            const begins = goal !== targets[i] || (goal === value[i] && velocity[i] !== 0);
+            const size = begins || !p.omega2 ? sizeOf(p, goal - value[i], velocity[i] - speed[i]) : 0;
+            if (begins || size > sizes[i]) {
                 targets[i] = goal;
-                sizes[i] = sizeOf(p, goal - value[i], velocity[i] - speed[i]);
+                sizes[i] = size;
             }
             if (sizes[i] > largest) largest = sizes[i];
         }
@@ -208,9 +219,10 @@ export class Springs {
         ];
         const sizes = this.#sizes;
         const [mostDelta] = tolerances(this.#relative ? this.#measure(p, from, end) : 0);
+        const attracts = p.omega2 > 0; // without stiffness, only the velocity of a target has an effect
         const near = (left, speed, size) => {
             const [byDelta, bySpeed] = tolerances(size);
-            return left <= byDelta && abs(speed) <= bySpeed;
+            return (attracts ? left : abs(speed) * p.reach) <= byDelta && abs(speed) <= bySpeed;
         };
         let resting = 0;
         if (dt === 0) {
@@ -223,7 +235,6 @@ export class Springs {
         p.prepare(dt);
         const { half, F, G, H, fraction, omega2, angle } = p;
         const wH = omega2 * H;
-        const attracts = omega2 > 0; // without stiffness, only the velocity of a target has an effect
         const clamp = this.clamp && dt > 0 && attracts;
         const steered = this.#steered;
         const turns = angle >= PI;
@@ -250,7 +261,8 @@ export class Springs {
                 }
                 if (passed || near(abs(x - goal), u, sizes[i]) || lands(x, to, y, u, fraction, omega2)) {
                     if (tells && speed === 0 && !this.#rests(i)) this.#rested.push(i);
-                    value[i] = goal;
+                    value[i] = attracts ? goal : x;
+                    if (!attracts) sizes[i] = 0;
                     velocity[i] = speed;
                     resting += speed === 0;
                     continue;

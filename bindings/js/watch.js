@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Listeners of springs that may begin to move. The loop of animate.js is one.
+// Listeners of springs that may begin to move. The loop of animate.js is one. Its copy of this file may be another one than
+// that of the springs, if a page has two copies of the package, so names are symbols of the global registry.
 
 /** The name of a method of Springs that returns whether steps would still change a value. */
-export const moves = Symbol();
+export const moves = Symbol.for("springstep.moves");
 
-const listeners = new WeakMap();
+/** The name of the field of a spring that has its listener. */
+export const listener = Symbol.for("springstep.listener");
 
-/** Calls `listener` whenever a spring may begin to move; null: no longer. */
-export function watch(spring, listener) {
-    if (listener && listeners.get(spring)) throw new TypeError("the spring is animated by another loop");
-    listeners.set(spring, listener);
+/** Calls a function whenever a spring may begin to move; null: no longer. */
+export function watch(spring, call) {
+    if (call && spring[listener]) throw new TypeError("the spring is animated by another loop");
+    spring[listener] = call;
 }
 
-export const changed = (spring) => listeners.get(spring)?.();
+export const changed = (spring) => spring[listener]?.();

@@ -403,11 +403,17 @@ await test("a CSS transition moves like the spring", async () => {
 
 await test("a sheet: a flick dismisses it, a slow drag does not", async () => {
     const html = '<div id="sheet" style="position: absolute; top: 300px; width: 300px; height: 200px"></div>';
-    const more = 'recipe.sheet(document.querySelector("#sheet"), () => (window.dismissed = true));';
+    const more = `recipe.sheet(document.querySelector("#sheet"), () => (window.dismissed = true));
+        window.least = 0;
+        const low = () => (window.least = Math.min(window.least, parseFloat(sheet.style.translate.split(" ")[1] ?? 0)));
+        new MutationObserver(low).observe(sheet, { attributes: true });`;
     const page = await opened("sheet", program(page_, "A sheet", "js"), { html, more });
     await flick(page, [100, 320], [0, 0.1], 200, 200);
     await rests(page, "#sheet", "0px");
     assert.equal(await page.evaluate(() => window.dismissed), undefined);
+    await flick(page, [100, 450], [0, -1.5], 60);
+    await rests(page, "#sheet", "0px");
+    assert.equal(await page.evaluate(() => window.least), 0, "it does not rise above its open position");
     for (let i = 0; i < 5 && !(await page.evaluate(() => window.dismissed)); i++) {
         await flick(page, [100, 320], [0, 1.2], 60);
         await page.waitForFunction(() => ["0px", "0px 200px"].includes(getComputedStyle(sheet).translate));

@@ -610,16 +610,61 @@ await test("animate: reduced motion jumps, or as told", async () => {
     await finished;
     assert.deepStrictEqual([drawn, rested, many.value[1]], [[4], 1, 4]);
     assert(!fade.settled && it.run() > 10 && fade.value === 4);
+    it.animate(fade, () => {})();
+    it.animate(fade, () => {});
+    fade.target = 5;
+    assert(it.frame(16) && !fade.settled, "another function that draws does not end the first one's choice");
+    delete globalThis.matchMedia;
+});
+
+await test("animate: reduced motion does not flash if rest starts the next motion", async () => {
+    globalThis.matchMedia = () => ({ matches: true });
+    const turn = (spring) => (spring.target = 1 - spring.target);
+    const byCallback = (spring) => (spring.onRest = turn);
+    const byPromise = async (spring) => {
+        for (;;) {
+            await spring.finished;
+            turn(spring);
+        }
+    };
+    for (const [start, options] of [
+        [byCallback, {}],
+        [byPromise, {}],
+        [byPromise, { duration: 5 }],
+    ]) {
+        const it = stage();
+        const spring = new Spring(0, options);
+        let seen = 0;
+        let changes = 0;
+        const stop = it.animate(spring, (value) => {
+            changes += value !== seen;
+            seen = value;
+        });
+        spring.target = 1;
+        start(spring);
+        for (let i = 0; i < 60; i++) {
+            it.frame(1000 / 60);
+            await new Promise((resolve) => setTimeout(resolve, 2));
+        }
+        assert(changes === 2, `${changes} changes in a second`);
+        spring.onRest = null;
+        const target = 2 + spring.target;
+        spring.target = target;
+        it.frame(1000 / 60);
+        assert.strictEqual(seen, target, "other changes need not wait");
+        stop();
+    }
     delete globalThis.matchMedia;
 });
 
 await test("animate: without requestAnimationFrame it uses a timer", async () => {
     const spring = new Spring(0, { duration: 0.05 });
-    let frames = 0;
-    const stop = animate(spring, () => frames++);
+    const drawn = [];
+    const stop = animate(spring, (value) => drawn.push(value));
     spring.target = 1;
     await spring.finished;
-    assert(frames > 1 && spring.value === 1);
+    await new Promise(setTimeout); // the frame in which it rests is drawn, too
+    assert(drawn.at(-1) === 1 && spring.value === 1);
     stop();
 });
 
@@ -740,7 +785,41 @@ await test("without stiffness a value settles where damping stops it", () => {
         assert(s.settled && s.velocity === 0 && rested === 1);
         const way = velocity / damping;
         assert(Math.abs(s.value - 7 - way) <= 1.001e-4 * Math.abs(way), `${s.value - 7}, not ${way}`);
+        const each = [];
+        const many = new Springs(2, { stiffness: 0, damping, onRest: (i) => each.push(i) });
+        many.value.fill(7);
+        many.velocity[1] = velocity;
+        let moving = 1;
+        for (let t = 0; t < 60 && moving > 0; t += 1 / 60) moving = many.step(1 / 60);
+        assert(moving === 0 && many.settled(1) && many.value[0] === 7);
+        assert(
+            Math.abs(many.value[1] - 7 - way) <= 1.001e-4 * Math.abs(way),
+            `${many.value[1] - 7}, not ${way}`,
+        );
+        assert.deepStrictEqual(each, [1]);
+        // finish() has the same end.
+        s.velocity = many.velocity[1] = velocity;
+        const ends = [s.value + way, many.value[1] + way];
+        s.finish();
+        many.finish();
+        assert(s.settled && many.settled(1) && many.value[0] === 7);
+        assert(Math.abs(s.value - ends[0]) + Math.abs(many.value[1] - ends[1]) <= 1e-12 * Math.abs(ends[0]));
     }
+    const undamped = new Spring(7, { stiffness: 0, damping: 0 });
+    undamped.velocity = 1;
+    undamped.finish();
+    assert(undamped.settled && undamped.value === 7);
+});
+
+await test("a loop of another copy of the package finds a change", async () => {
+    const it = stage();
+    const other = await import("../watch.js?another");
+    let calls = 0;
+    const spring = new Spring(0);
+    other.watch(spring, () => calls++);
+    spring.target = 1;
+    assert(calls > 0 && new Springs(1)[other.moves]() === false);
+    assert.throws(() => it.animate(spring, () => {}), /another loop/);
 });
 
 await test("a property that a spring does not have cannot be set", () => {
