@@ -53,8 +53,6 @@ export class Controls {
         $("reset").onclick = () => actions.reset();
         const steps = (n) => actions.steps(this.limited(Math.round(n)));
         $("steps").onchange = ({ target }) => steps(target.valueAsNumber);
-        $("steps").oninput = ({ target }) =>
-            target.validity.valid && target.value && steps(target.valueAsNumber);
         $("fewer").onclick = () => steps(state.steps - 1);
         $("more").onclick = () => steps(state.steps + 1);
         $("speed").onchange = ({ target }) => actions.set("speed", Number(target.value));
@@ -205,8 +203,7 @@ export class Controls {
         $("scene").value = state.scene;
         $("method").value = state.method;
         $("other").value = state.other;
-        if (document.activeElement !== $("steps") || $("steps").valueAsNumber !== state.steps)
-            $("steps").value = state.steps;
+        $("steps").value = state.steps;
         $("speed").value = state.speed;
         $("size").value = this.info.count[0];
         $("damping").value = Math.round(state.damping / dampingUnit[state.scene]);

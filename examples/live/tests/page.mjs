@@ -260,6 +260,19 @@ await test("numbers of steps that are not offered are limited, which is said", a
     await until("reset clears it", async () => (await page.textContent("#notice")) === "paused");
 });
 
+await test("a typed number of steps is used when it is complete", async () => {
+    await choose(page, "cloth", "leapfrog", presets.cloth.steps);
+    const step = () => page.textContent("#numbers td");
+    const before = await step();
+    await page.click("#steps", { clickCount: 3 });
+    await page.keyboard.type("20");
+    assert.equal(await step(), before, "after each key");
+    await page.keyboard.press("Enter");
+    assert.match(await step(), /^0\.833\sms$/, "after Enter");
+    await page.keyboard.press("ArrowUp");
+    assert.match(await step(), /^0\.794\sms$/, "after an arrow key");
+});
+
 // --- explosions
 
 await test("an explosion is said with its time, and one click starts again", async () => {
