@@ -81,15 +81,29 @@ def show_examples(app, name, source):
         source[0] = re.sub(r'\]\(([^):#]+)(?=[)#])', seen_from_here, text)
 
 
-def complete_style(app, error):
-    """Furo's style sheet in Debian imports normalize.css from beside the site."""
-    sheet = pathlib.Path(app.outdir) / '_static/styles/furo.css'
+def inline(file, statement, folder):
+    """Replaces each statement in a file that imports another file of a folder by the text of that file."""
+    file.write_text(re.sub(statement, lambda match: (folder / match[1]).read_text(), file.read_text()))
+
+
+def complete_theme(app, error):
+    """Completes Furo's files in Debian. Its style sheet imports normalize.css from a folder beside the site. Its script imports
+    a script that defines a global variable of the imported name, so with its text in place of the import, both are one classic
+    script."""
     if error is None:
-        there = lambda link: pathlib.Path('/usr/share' + link[1]).read_text()
-        sheet.write_text(re.sub(r'@import url\((/javascript/[^)]*)\);', there, sheet.read_text()))
+        static = pathlib.Path(app.outdir) / '_static'
+        inline(static / 'styles/furo.css', r'@import url\(/(javascript/[^)]*)\);', pathlib.Path('/usr/share'))
+        inline(static / 'scripts/furo.js', r'(?m)^import (?:\* as )?Gumshoe from "\./([^"]+)";$', static / 'scripts')
+
+
+def include_classic_scripts(app, page, template, context, doctree):
+    """Furo's script is a module in Debian 13. Browsers do not load modules from a disk."""
+    for script in context['script_files']:
+        script.attributes.pop('type', None)
 
 
 def setup(app):
     app.add_transform(Tidy)
     app.connect('source-read', show_examples)
-    app.connect('build-finished', complete_style)
+    app.connect('html-page-context', include_classic_scripts)
+    app.connect('build-finished', complete_theme)
