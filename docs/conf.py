@@ -18,7 +18,7 @@ html_title = f'springstep {release}'
 
 extensions = ['breathe', 'myst_parser']
 root_doc = 'index'
-myst_heading_anchors = 2  # the anchors that a code host makes, too
+myst_heading_anchors = 3  # the anchors that a code host makes, too
 nitpicky = True
 c_id_attributes = ['SPRING_API']
 nitpick_ignore = [('c:identifier', name) for name in ('size_t', 'uint8_t', 'uint32_t', 'uint64_t')]
