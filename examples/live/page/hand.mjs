@@ -11,7 +11,7 @@ export class Hand {
         scissors(): true if cutting is chosen */
     constructor(stage, cursor, act, scissors) {
         Object.assign(this, { stage, cursor, act, scissors });
-        this.doing = null;
+        this.stop();
         this.place = null; // of the keyboard's cursor [CSS px]
         const { canvas } = stage;
         canvas.addEventListener("pointerdown", (event) => this.down(event));
@@ -27,9 +27,15 @@ export class Hand {
         });
     }
 
+    /** Ignores input until begun(), because the scene on the screen is no longer the scene of the physics. */
+    stop() {
+        this.doing = null;
+        this.stopped = true;
+    }
+
     /** Resets the state for a new scene: nothing is held, and the cursor has no position. */
     begun() {
-        this.doing = null;
+        this.stopped = false;
         this.place = null;
         this.cursor.hidden = true;
     }
@@ -46,6 +52,7 @@ export class Hand {
     }
 
     begin(x, y, by) {
+        if (this.stopped) return;
         const { stage, act } = this;
         const { pane, ray } = stage.rayAt(x, y);
         this.doing = { kind: "turn", pane, by, x, y };
@@ -124,7 +131,7 @@ export class Hand {
             this.move(...this.place, "keyboard");
         } else if (event.key === "Enter" && !this.doing) {
             this.begin(...this.place, "keyboard");
-            if (this.doing.kind !== "hold" && this.doing.kind !== "push") this.doing = null;
+            if (!["hold", "push"].includes(this.doing?.kind)) this.doing = null;
         } else this.up("keyboard");
         this.cursor.classList.toggle("holds", this.doing?.by === "keyboard");
         this.cursor.style.left = `${this.place[0]}px`;

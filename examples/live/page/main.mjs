@@ -62,6 +62,7 @@ function run() {
 function remake() {
     const { method, other, steps, reference } = state;
     touched = false;
+    hand.stop();
     if (physics.failed) physics.start();
     physics.order("make", {
         run: run(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The interface of the page to the worker. Commands are sent when the worker is ready, one tick is pending at a time,
-// and questions return a Promise. After an exception in the worker, nothing is sent until start().
+// and questions return a Promise. Of scenes ordered in quick succession, only the last is shown. After an exception in
+// the worker, nothing is sent until start().
 
 export class Physics {
     /** source: source text of the worker */
@@ -19,6 +20,7 @@ export class Physics {
         this.worker.onerror = ({ message }) => this.fail(message);
         this.waiting = new Map();
         this.underWay = this.failed = false;
+        this.making = 0; // scenes ordered, but not made
         this.ready = new Promise((resolve) => (this.isReady = resolve));
         this.worker.postMessage({ kind: "start" });
     }
@@ -32,6 +34,7 @@ export class Physics {
 
     order(kind, more = {}) {
         const { worker } = this;
+        if (kind === "make") this.making++;
         this.ready.then(() => worker.postMessage({ kind, ...more }));
     }
 
@@ -59,10 +62,10 @@ export class Physics {
 
     hear(message) {
         if (message.kind === "ready") this.isReady();
-        if (message.kind === "made") this.onmade(message);
+        if (message.kind === "made" && --this.making === 0) this.onmade(message);
         if (message.kind === "frame") {
             if (!message.asked) this.underWay = false;
-            this.onframe(message);
+            if (this.making === 0) this.onframe(message);
         }
         if (message.kind === "answer") {
             this.waiting.get(message.id)?.resolve(message.answer);

@@ -30,7 +30,14 @@ function dropAll() {
 }
 
 function newPane(method) {
-    return { lab: new Lab(run), method, exploded: null, busy: 0, taken: 0, micros: NaN };
+    const pane = { lab: new Lab(run), exploded: null, micros: NaN };
+    setMethod(pane, method);
+    return pane;
+}
+
+// A method that the scene does not support can be chosen while the page still shows the previous scene.
+function setMethod(pane, method) {
+    Object.assign(pane, { method: pane.lab.takes(method) ? method : "leapfrog", busy: 0, taken: 0 });
 }
 
 // The reference uses the most accurate method. Its steps divide the steps of the panes, so that all have common times.
@@ -64,7 +71,6 @@ function make(settings) {
     run = settings.run;
     steps = settings.steps;
     panes = settings.methods.map(newPane);
-    for (const pane of panes) if (!pane.lab.takes(pane.method)) pane.method = "leapfrog";
     if (settings.reference) reference = newReference();
     for (const lab of everyLab()) {
         if (settings.wind) lab.wind(settings.wind);
@@ -157,9 +163,7 @@ const orders = {
     make,
     tick: ({ elapsed }) => tick(elapsed),
     steps: (message) => (steps = message.steps),
-    method: ({ pane, method }) => {
-        if (panes[pane]) Object.assign(panes[pane], { method, busy: 0, taken: 0 });
-    },
+    method: ({ pane, method }) => panes[pane] && setMethod(panes[pane], method),
     touch: ({ call, values }) => everyLab().forEach((lab) => lab[call](...values)),
     ask({ id, question, parameters }) {
         postMessage({ kind: "answer", id, answer: questions[question](...parameters) });

@@ -90,6 +90,54 @@ for (const [method, order, steps] of [
         assert.ok(Math.abs(slope - order) <= 0.15, `slope ${slope}, errors ${errors}`);
     });
 
+// --- input before a new scene has arrived
+
+/** Chooses values of selects, all before the worker answers. */
+const set = (page, ...choices) =>
+    page.evaluate((all) => {
+        for (const [id, value] of all) {
+            const select = document.getElementById(id);
+            select.value = value;
+            select.dispatchEvent(new Event("change"));
+        }
+    }, choices);
+
+await test("a method that the next scene does not support is replaced", async () => {
+    await choose(page, "cloth", "leapfrog");
+    await set(page, ["scene", "curtain"], ["method", "euler"]);
+    await ask(page, "step", 2);
+    assert.equal(await page.inputValue("#method"), "leapfrog");
+});
+await test("a scene that is replaced before it arrives changes no setting", async () => {
+    await choose(page, "cloth", "leapfrog");
+    await set(page, ["scene", "curtain"], ["scene", "rope"], ["method", "euler"]);
+    await ask(page, "step", 2);
+    assert.equal(await page.inputValue("#method"), "euler");
+});
+await test("a press before the new scene arrives holds nothing", async () => {
+    await choose(page, "rope", "leapfrog");
+    await ask(page, "step", 1);
+    const end = 19;
+    const start = await ask(page, "position", end);
+    const point = await ask(page, "pixel", end);
+    const press = (kind) =>
+        page.evaluate(
+            ([type, [x, y]]) => {
+                const canvas = document.getElementById("canvas");
+                const { left, top } = canvas.getBoundingClientRect();
+                if (type === "pointerdown") document.getElementById("reset").click();
+                canvas.dispatchEvent(new PointerEvent(type, { clientX: left + x, clientY: top + y }));
+            },
+            [kind, point],
+        );
+    await press("pointerdown");
+    assert.equal(await ask(page, "time"), 0);
+    await press("pointerup");
+    await ask(page, "step", 30);
+    assert.ok((await ask(page, "position", end))[2] < start[2] - 0.1, "it falls");
+    assert.ok(await ask(page, "command"), "it was not touched");
+});
+
 // --- the command
 
 const shown = () => page.$eval("#no-command", (none) => none.hidden);
