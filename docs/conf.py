@@ -29,6 +29,7 @@ breathe_domain_by_extension = {'h': 'c'}
 breathe_show_define_initializer = True
 
 html_theme = 'furo'
+pygments_style = 'default'  # all colours have a contrast of at least 4.5, unlike those of the theme in Debian
 html_static_path = ['style.css']
 html_css_files = ['style.css']
 html_copy_source = False
