@@ -74,6 +74,22 @@ class Tidy(SphinxTransform):
                     siblings.insert(first, node)
 
 
+class KeepNumbers(SphinxTransform):
+    """Marks numbers such as 1.4e-2 in tables, because browsers may break a line after the minus sign."""
+
+    default_priority = 840
+
+    def apply(self):
+        for cell in self.document.findall(nodes.entry):
+            for text in list(cell.findall(nodes.Text)):
+                others_and_numbers = re.split(r'(\d[\d.]*e-\d+)', text)
+                if len(others_and_numbers) > 1:
+                    text.parent.replace(text, [
+                        nodes.inline('', part, classes=['number']) if i % 2 else nodes.Text(part)
+                        for i, part in enumerate(others_and_numbers)
+                    ])
+
+
 def show_examples(app, name, source):
     """The page of the examples is that of their folder, its links as seen from here."""
     if name == 'examples':
@@ -105,6 +121,7 @@ def include_classic_scripts(app, page, template, context, doctree):
 
 def setup(app):
     app.add_transform(Tidy)
+    app.add_transform(KeepNumbers)
     app.connect('source-read', show_examples)
     app.connect('html-page-context', include_classic_scripts)
     app.connect('build-finished', complete_theme)
