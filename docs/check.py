@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Is a site whole? Every link inside it leads somewhere, nothing is fetched from elsewhere, and every public name has its
-place.
+"""Is a site whole? Every link inside it leads somewhere, nothing is fetched from elsewhere, no script is a module, and
+every public name has its place.
 
 usage: check.py SITE DOXYGEN-XML EXPORTS
 """
 
+import functools
 import html.parser
 import pathlib
 import re
@@ -21,6 +22,12 @@ def fetched_by_style(text):
         yield from filter(None, matches)
 
 
+@functools.cache
+def is_module(script):
+    """Does the text of a script import or export? If so, it fails in a page that includes it as a classic script."""
+    return re.search(r"""(?:^|;)\s*(?:import|export)\b\s*[\w{*"']""", script.read_text(), re.M)
+
+
 class Page(html.parser.HTMLParser):
     """The anchors of a page and what it links to: (address, does a browser fetch it by itself?)."""
 
@@ -29,6 +36,7 @@ class Page(html.parser.HTMLParser):
         self.anchors = set()
         self.links = []
         self.style = ''
+        self.has_module = False
         self.feed(path.read_text())
         self.links += ((address, True) for address in fetched_by_style(self.style))
 
@@ -41,6 +49,7 @@ class Page(html.parser.HTMLParser):
         # Addresses, each with a width or a density behind it or not; one may have commas in it.
         for address in re.findall(r'([^\s,]\S*[^\s,])(?:\s+[\d.]+[wx])?\s*(?:,|$)', attributes.get('srcset') or ''):
             self.links.append((address, True))
+        self.has_module |= tag == 'script' and attributes.get('type') == 'module'
         self.style += f" {attributes.get('style') or ''}"
 
     def handle_data(self, data):
@@ -75,6 +84,10 @@ def faults(site, doxygen, exports):
                 yield f'{path}: no file for {address}'
             elif parts.fragment and target in pages and urllib.parse.unquote(parts.fragment) not in pages[target].anchors:
                 yield f'{path}: no anchor for {address}'
+            elif fetched and target.suffix == '.js' and is_module(target):
+                yield f'{path}: {address} imports or exports, as only modules can'
+    # Browsers do not load modules from a disk.
+    yield from (f'{path}: includes a module' for path, page in pages.items() if page.has_module)
     anchors = set().union(*(page.anchors for page in pages.values()))
     names = list(public_names(doxygen))
     yield from (f'{name} is in a header and in no page' for anchor, name in names if anchor not in anchors)
