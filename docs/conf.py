@@ -105,8 +105,8 @@ def inline(file, statement, folder):
 
 def complete_theme(app, error):
     """Completes Furo's files in Debian. Its style sheet imports normalize.css from a folder beside the site. Its script
-    imports a script that defines a global variable of the imported name. With the text of the imported script instead of
-    the import, it is a classic script."""
+    imports a script that defines a global variable of the imported name. With the text of that script instead of the
+    import, it is a classic script."""
     if error is None:
         static = pathlib.Path(app.outdir) / '_static'
         inline(static / 'styles/furo.css', r'@import url\(/(javascript/[^)]*)\);', pathlib.Path('/usr/share'))
