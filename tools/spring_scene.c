@@ -190,13 +190,14 @@ static bool is_disturbed(void)
 /* On one axis, the extension of a link has a sign, so options that need lengths are refused. */
 static void refuse_on_one_axis(const preset_settings *s)
 {
-    if (s->axes == 1 && (tension_only || tear > 0 || tethers > 0 || colliders.count > 0))
-        cli_fail(CLI_USAGE, "--%s is not for scenes with one axis, such as this %s",
-                 tension_only  ? "tension-only"
-                 : tear > 0    ? "tear"
-                 : tethers > 0 ? "tethers"
-                               : "collider",
+    static const char why[] = "is not for scenes with one axis, such as this";
+    if (s->axes == 1 && tension_only)
+        cli_fail(CLI_USAGE, "--tension-only: %s %s", why, preset_names[kind]);
+    if (s->axes == 1 && (tear > 0 || tethers > 0))
+        cli_fail(CLI_USAGE, "--%s: \"%g\" %s %s", tear > 0 ? "tear" : "tethers", tear > 0 ? tear : tethers, why,
                  preset_names[kind]);
+    if (s->axes == 1 && colliders.count > 0)
+        cli_fail(CLI_USAGE, "--collider: \"%s\" %s %s", colliders.word[0], why, preset_names[kind]);
     if ((tension_only || tethers > 0) && spring_method_describe((spring_method)method)->positions_only)
         cli_fail(CLI_USAGE, "--%s: the method \"%s\" requires smooth forces; choose another --method",
                  tension_only ? "tension-only" : "tethers", spring_method_name((spring_method)method));
@@ -332,7 +333,7 @@ static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
         list[count++] = disturbances_poke(r, s, disturbance_time);
     for (uint64_t i = 0; i < boxes; i++)
         list[count++] = disturbances_box(r, s, box[i][0], box[i][1], disturbance_time);
-    disturbances *p = start_disturbances(r, list, count);
+    disturbances *p = is_disturbed() ? start_disturbances(r, list, count) : NULL;
     free(list);
     return p;
 }
@@ -364,17 +365,20 @@ static double number_of(const state *y, size_t index)
 /* The file of --load. Sets start_time. */
 static state read_state(void)
 {
-    enum { LEAST = 26 * 8, T0 = 17, DT, STEPS };
+    enum { LEAST = 26 * 8, MAGIC = 0, BYTES = 12, T0 = 17, DT, STEPS };
+    const state magic = {(uint8_t[]){"SPRSTATE"}, 8};
     state y = {NULL, 0};
     FILE *const file = fopen(load, "rb");
     size_t room = 0, got = 0;
+    bool more = true; /* the header says how long the rest is */
     do {
         y.size += got;
         if (y.size == room)
             y.bytes = realloc(y.bytes, room = 2 * room + 65536);
         if (y.bytes == NULL)
             cli_fail(CLI_FAILED, "no memory for --load");
-    } while (file != NULL && (got = fread(y.bytes + y.size, 1, room - y.size, file)) > 0);
+        more = y.size < LEAST || (word_of(&y, MAGIC) == word_of(&magic, 0) && y.size <= word_of(&y, BYTES));
+    } while (more && file != NULL && (got = fread(y.bytes + y.size, 1, room - y.size, file)) > 0);
     if (file == NULL || ferror(file) != 0 || fclose(file) != 0)
         cli_fail(CLI_IO, "--load: cannot read \"%s\": %s", load, strerror(errno));
     if (y.size >= LEAST)
@@ -384,8 +388,11 @@ static state read_state(void)
     return y;
 }
 
-static void load_state(spring_scene *scene, const state *y)
+/* The state has its gravity, which would replace that of --gravity. Other options that the state does not have, such as
+   --stiffness, are those of this run. */
+static void load_state(spring_scene *scene, const spring_scene_def *def, const state *y)
 {
+    enum { GRAVITY = 22 };
     const spring_status status = spring_scene_load(scene, y->bytes, y->size);
     if (status == SPRING_EMISMATCH)
         cli_fail(CLI_USAGE,
@@ -394,6 +401,13 @@ static void load_state(spring_scene *scene, const state *y)
                  load);
     if (status != SPRING_OK)
         cli_fail(CLI_USAGE, "--load: \"%s\" is not a saved state, or damaged", load);
+    for (uint32_t axis = 0; axis < def->axes; axis++)
+        if (number_of(y, GRAVITY + axis) != def->gravity[axis])
+            cli_fail(
+                CLI_USAGE,
+                "--gravity: the scene has \"%g\" m/s^2 along an axis, and the state in \"%s\" has %g; both should be "
+                "equal",
+                def->gravity[axis], load, number_of(y, GRAVITY + axis));
 }
 
 static void save_state(const spring_scene *scene, cli_table *file)
@@ -580,6 +594,9 @@ static void choose_length(void)
                  steps_per_frame);
     if (steps_per_frame > 0)
         length.dt = scene_run_step(frame_rate, steps_per_frame);
+    if (steps_per_frame > 0 && !(length.dt > 0))
+        cli_fail(CLI_USAGE, "--frame-rate: \"%g\" with --steps-per-frame \"%" PRIu64 "\" gives a step of 0 s",
+                 frame_rate, steps_per_frame);
     if (cli_given(&length.steps) && length.dt == 0 && !cli_given(&length.duration))
         cli_fail(CLI_USAGE,
                  "--steps: \"%" PRIu64 "\" does not set the time; give --dt, --steps-per-frame or --duration as well",
@@ -593,6 +610,12 @@ static void choose_step(spring_scene *scene, bool disturbed)
     if (length.dt > 0)
         return;
     length.dt = default_step(scene, disturbed);
+    if (!(length.dt > 0))
+        cli_fail(CLI_USAGE,
+                 "--fps: \"%g\"%s%.3g%s gives a default step of 0 s; a larger number, or --dt, should give a step", fps,
+                 disturbed ? " with --push-duration \"" : " with a stable step of ",
+                 disturbed ? disturbance_time : spring_scene_stable_step(scene, SPRING_LEAPFROG),
+                 disturbed ? "\"" : " s");
     run_length_settle(&length);
 }
 
@@ -643,7 +666,8 @@ static void check_frames(void)
 {
     const double most_frames = 1e6; /* six digits */
     if (!(length.duration * fps < most_frames) && !cli_given(&fps))
-        cli_fail(CLI_USAGE, "a run of %g s has more than %g frames, at %g per second; it should be below %g s",
+        cli_fail(CLI_USAGE,
+                 "--duration: a run of \"%g\" s has more than %g frames, at %g per second; it should be below %g s",
                  length.duration, most_frames, fps, most_frames / fps);
     if (!(length.duration * fps < most_frames))
         cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps, most_frames,
@@ -676,7 +700,7 @@ int main(int argc, char **argv)
     choose_step(scene, p != NULL);
     remark_on_step(scene, p != NULL);
     if (load != NULL)
-        load_state(scene, &loaded);
+        load_state(scene, &r.def, &loaded);
 
     const uint64_t frame_count = (uint64_t)(length.duration * fps * (1 + DBL_EPSILON)) + 1;
     view v = open_view(&r, scene, bytes, frame_count);
@@ -687,7 +711,7 @@ int main(int argc, char **argv)
         save_state(scene, v.save);
     cli_finish();
     if (tear > 0)
-        cli_warn("%zu of %zu links have torn", v.torn, r.def.links);
+        cli_warn("%zu of %zu links have torn", v.torn, r.def.links - r.tethers);
     if (!survived)
         cli_warn("the scene explodes: its energy overflows at t = %.17g s", v.lost_at);
     free(loaded.bytes);

@@ -422,7 +422,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
  * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
  *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02, and none becomes
- *    longer than twice its rest length, otherwise half of this;
+ *    longer than twice its rest length, otherwise up to 0.5;
  *  - with drag/mass of at least 0.1/s, up to 0.9 for soft bodies and sheets with shear springs while no link is longer
  *    than twice its rest length, and up to 0.5 for ropes and other nets;
  *  - half of these if links are tension-only, where tethers do not count;

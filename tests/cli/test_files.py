@@ -207,6 +207,15 @@ def test_dev_stdout_appends_where_standard_output_does(older):
     assert older.read_text() == 'older\n' + run(ORDER, *SHORT[ORDER]).stdout
 
 
+def test_names_of_open_files_keep_what_they_have(older):
+    for name, redirected in [('/dev/fd/1', 'stdout'), ('/dev/stderr', 'stderr')]:
+        older.write_text('older\n')
+        with open(older, 'a', encoding='ascii') as log:
+            run(ORDER, *SHORT[ORDER], '-o', name, **{redirected: log})
+        assert older.read_text() == 'older\n' + run(ORDER, *SHORT[ORDER]).stdout
+    is_failure(run(RUN, *SHORT[RUN], '--every', '1', '--envelope', '/dev/fd/1'), 2, '--envelope', '"/dev/fd/1"', 'another file')
+
+
 def test_dev_fd(older):
     inode = older.stat().st_ino
     with open(older, 'w', encoding='ascii') as log:

@@ -375,6 +375,7 @@ def test_a_hammock(tmp_path):
     ('--error 0.02 --duration 1 --scene water --tethers 0.05', 2, ['--tethers: "0.05"', 'one axis']),
     ('--error 0.02 --duration 1 --hertz 2 --tethers 0.05', 2, ['--tethers: "0.05"', 'scene']),
     ('--sag 0.02 --presets', 2, ['--sag: "0.02"', '--presets']),
+    ('--sag 0.9 --scene jelly --size 4', 2, ['--sag: "0.9"', 'stands on its pins', 'at most 0.5']),
 ])
 def test_what_does_not_hang(options, status, words):
     is_failure(run(PLAN, *options.split(), stdout=None), status, *words)
@@ -404,6 +405,24 @@ def test_the_rule_for_steps(options, fraction, words):
     elif first['method'] == 'leapfrog':
         beyond = float(first['dt_s']) > float(found[0][2]) / fraction
         assert ('\n# limit: the step of the plan is longer than the stable step' in printed) == beyond
+
+
+@pytest.mark.parametrize('options', ['--sag 0.3 --scene cloth --size 13', '--sag 1 --scene rope --damping 3'])
+def test_links_of_more_than_twice_their_length(options):
+    """Half of the stable step where links are longer than that, and 0.9 where they are not."""
+    rows = parse(run(PLAN, *options.split()).stdout)
+    assert {float(row['link_stretch']) > 1 for row in rows} == {False, True}
+    for row in rows:
+        allowed = 0.5 if float(row['link_stretch']) > 1 else 0.9
+        assert int(row['steps_per_frame']) == math.ceil(1 / 60 / (allowed * float(row['stable_step_s'])))
+
+
+@pytest.mark.parametrize('options', ['--error 0.01 --duration 0.1 --scene chain --mass 1e30 --stiffness 1e40',
+                                     '--sag 0.02 --scene rope --mass 1e-40'])
+def test_a_scene_that_is_not_representable_in_single_precision(options):
+    printed = run(PLAN, *options.split()).stdout
+    assert '(float: not representable)' in printed and 'nan' not in printed.partition('plan: ')[2].partition('limit\t')[2]
+    assert all(row.get('precision', 'double') == 'double' for row in parse(printed)) and parse(printed)
 
 
 def test_a_part_that_falls(tmp_path):

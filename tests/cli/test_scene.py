@@ -257,6 +257,7 @@ LONG = ['--scene cloth --method leapfrog --damping 0.3',
         '--scene cloth --method leapfrog --dt 1e-3 --fps 50 --tear 1.1 --collider sphere:x=1,y=1,z=-.6,radius=.4,vz=0.1',
         '--scene jelly --method symplectic-euler --dt 1e-3 --fps 50 --collider plane:z=-.2 --tension-only',
         '--scene water --method rk4 --rain 10 --dt 5e-4 --fps 50',
+        '--scene rope --method leapfrog --rain 1 --seed 1 --dt 1e-3 --fps 50',  # the first drop is in the second half
         '--scene rope --method srkn6 --dt 0x1p-10 --fps 64 --poke .2,0,0,2,.1 --push-duration .2']
 
 
@@ -285,6 +286,8 @@ def test_states_of_other_scenes_are_refused(tmp_path):
         (tmp_path / 'wrong').write_bytes(bytes_)
         is_failure(run(SCENE, *f'--scene cloth {short} --load {tmp_path}/wrong'.split()), 2, '--load')
     is_failure(run(SCENE, *f'--scene cloth {short} --load {tmp_path}/none'.split()), 3, '--load')
+    is_failure(run(SCENE, *f'--scene cloth {short} --load /dev/zero'.split()), 2, '--load', 'not a saved state')
+    is_failure(run(SCENE, *f'--scene cloth {short} --load {state} --gravity 5'.split()), 2, '--gravity', '"-5"', '-9.81')
 
 
 # --- frames ---------------------------------------------------------------------------------------------------------

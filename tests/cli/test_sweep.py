@@ -167,11 +167,12 @@ def changed(data, seed):
     if seed < len(cut):
         return data[:cut[seed]]
     at = data.index(b'# block ', len(data) // 2)
+    row = data.rindex(b'\n', 0, at - 1) + 1  # the last one of a block
     return [data + b'more\n', data[:at] + data[at:].partition(b'\n')[2], data[:at] + data[at - 2000:],
-            data[:-1000] + bytes(10**8)][seed - len(cut)]
+            data[:-1000] + bytes(10**8), data[:row] + data[at:], data[:at] + data[row:]][seed - len(cut)]
 
 
-@pytest.mark.parametrize('seed', range(12))
+@pytest.mark.parametrize('seed', range(14))
 def test_incomplete(seed, parts, tmp_path):
     """Not joined, and computed again."""
     path, *others = copies(parts, tmp_path)
@@ -432,7 +433,7 @@ def test_angle():
     ('--over omega_dt', ['"omega_dt" is not NAME=A:B:N']),
     *[(f'--over omega_dt={values}', [f'"omega_dt={values}" is not NAME=A:B:N'])
       for values in ['', ':', '1:2', '1:2:1', '1:2:0', '1:2:-3', '1:2:3:4', '1:2:x', '1:2:log', '1:2:lin:3', '1,,2', '1,',
-                     ',1', 'nan', 'inf', '1x', '1:nan:3', '1:2:1e3', '1:2:99999999999999999999']],
+                     ',1', 'nan', 'inf', '1x', '1:nan:3', '1:2:1e-3', '1:2:99999999999999999999']],
     ('--over omega_dt=0:1:3', ['"omega_dt=0:1:3" has the value 0', 'from 1e-06 to 1e+06']),
     ('--over damping_ratio=0:1:log:3', ['logarithmic', 'greater than 0']),
     ('--over damping_ratio=1e6:1e-320:log:3', ['too far apart']),

@@ -128,9 +128,16 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--scene water --axes 2', ['--axes', '"2"', '1 or 3']),
         (SCENE, '--scene water --stretch 1', ['--stretch', '"1"', 'greater than 1']),
         (SCENE, '--scene jelly --size 4000', ['--size', '"4000"', 'more particles or links']),
-        (SCENE, '--mass 1e-320 --dt 1', ['mass', 'not valid', 'should be finite']),
+        *[(SCENE, f'--{name} {value} --dt 1', [f'--{name}: ', f'"{shown}"', 'should be finite'])
+          for name, value, shown in [('mass', '1e-310', '1e-310'), ('stiffness', '1e308', '1e+308'), ('damping', '1e308', '1e+308'),
+                                     ('drag', '1e308', '1e+308'), ('tethers', '1e308', 'inf')]],
+        *[(SCENE, f'--scene chain {words}', [f'{words.split()[0]}: ', 'not for scenes with one axis', *words.split()[1:]])
+          for words in ('--tear 2.5', '--tethers 0.25', '--tension-only')],
+        (SCENE, '--fps 1e-320', ['--fps: "9.9', 'step of 0 s']),
+        (SCENE, '--drop-box 0,1 --push-duration 1e-310', ['--push-duration "1e-310"', 'step of 0 s']),
+        (SCENE, '--frame-rate 1e308 --steps-per-frame 4', ['--frame-rate: "1e+308"', '"4"', 'step of 0 s']),
         (SCENE, '--duration 1e4 --dt 1e-13', ['--dt', '"1e-13"', '2^53 steps', 'at least 1.1']),
-        (SCENE, '--duration 1e5', ['a run of 100000 s', '1e+06 frames', '60 per second', 'below 16666.7 s']),
+        (SCENE, '--duration 1e5', ['--duration: a run of "100000" s', '1e+06 frames', '60 per second', 'below 16666.7 s']),
         (SCENE, '--duration 1e5 --fps 60', ['--fps', '"60"', '1e+06 frames', 'below 10']),
         (SCENE, '--mass 1e-300', ['a run of 0.1 s', '2^53 steps of 1.1']),
         (SCENE, '--fps 1e300', ['--fps', '"1e+300"', 'below 1e+07']),
@@ -164,7 +171,9 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{PLAN} --error 0.1 --duration 1 --mesh a.obj --scene rope', ['--mesh', '"a.obj"', '--scene']),
         (f'{PLAN} --error 0.1 --duration 1 --mesh a.obj --stiffness 1 --size 9', ['--size', '"9"', '--scene']),
         (f'{PLAN} --error 0 --duration 1 --hertz 1', ['--error', '"0"', POSITIVE]),
-        (f'{PLAN} --error 0.1 --duration 1 --stiffness 1e308 --mass 1e-3', ['stiffness', 'not finite']),
+        (f'{PLAN} --error 0.1 --duration 1 --stiffness 1e308 --mass 1e-3', ['--mass: "0.001"', 'stiffness/mass', 'finite']),
+        *[(f'{PLAN} --error 0.1 --duration 1 --hertz {value}', [f'--hertz: "{shown}"', 'too large or too small'])
+          for value, shown in [('1e300', '1e+300'), ('1e-170', '1e-170')]],
         *[(f'{PLAN} --presets --{name} 3', [f'--{name}', '"3"', 'not for --presets'])
           for name in ('size', 'mass', 'damping', 'damping-ratio', 'drag')],
         (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --quick', ['--quick', 'without --presets']),

@@ -196,7 +196,8 @@ static void open_stream(cli_table *table)
     const bool exists = stat(path, &status) == 0;
     const bool device = strncmp(path, "/dev/", 5) == 0 && strncmp(path, "/dev/shm/", 9) != 0;
     if (device || (exists && !S_ISREG(status.st_mode))) {
-        table->stream = fopen(path, "w"); /* a device or a pipe is not replaced */
+        /* A device or a pipe is not replaced. A file that has a name under /dev, such as /dev/stderr, keeps its text. */
+        table->stream = fopen(path, exists && S_ISREG(status.st_mode) ? "a" : "w");
     } else if (exists) {
         /* a symbolic link is kept and its target replaced; the file keeps its mode */
         if (access(path, W_OK) == 0 && realpath(path, table->path) != NULL)
@@ -212,12 +213,17 @@ static void open_stream(cli_table *table)
         fail_to_write(table);
 }
 
+static bool is_standard_output(const char *path)
+{
+    return strcmp(path, "/dev/stdout") == 0 || strcmp(path, "/dev/fd/1") == 0 || strcmp(path, "/proc/self/fd/1") == 0;
+}
+
 cli_table *cli_open_file(const char *option, const char *path)
 {
     assert(table_count < sizeof tables / sizeof tables[0]); /* no tool opens more tables */
     cli_table *table = &tables[table_count++];
     *table = (cli_table){.option = option, .name = path != NULL ? path : "/dev/stdout"};
-    if (strcmp(table->name, "/dev/stdout") != 0) {
+    if (!is_standard_output(table->name)) {
         open_stream(table);
     } else { /* not opened again: that would truncate a file to which it is redirected */
         for (size_t i = 0; i < table_count; i++)

@@ -224,10 +224,11 @@ static double stretch_of_scene(const hanging *h)
 
 /* ------------------------------------------------------------------------------------------------------- the search */
 
+static const double most_compression = 0.5; /* of links; with more, spring_scene_stable_step() is not a bound */
+
 static void check_shape(const hanging *h, double sag, double stiffness)
 {
-    const double most = 0.5; /* beyond it, spring_scene_stable_step() is not a bound */
-    if (h->stands && (stretch_of_links(h) > most || !is_above_pins(h)))
+    if (h->stands && (stretch_of_links(h) > most_compression || !is_above_pins(h)))
         refuse_sag(sag, stiffness, "collapses");
 }
 
@@ -257,22 +258,22 @@ static double search(const hanging *h, double sag, double first, double stretch_
 
 static double stable_step(const preset *scene, plan_precision precision)
 {
-    if (precision == PLAN_DOUBLE)
-        return start_stable_step(scene, SPRING_LEAPFROG);
-    spring_scenef *settled = start_single(scene);
-    const double step = spring_scenef_stable_step(settled, SPRING_LEAPFROG);
-    free(settled);
-    return step;
+    return precision == PLAN_DOUBLE ? start_stable_step(scene, SPRING_LEAPFROG) : start_stable_step_in_float(scene);
 }
 
 /* Computes the steps for a stiffness. */
 static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
+    const double far = 1; /* links of twice their rest length */
     set_links(scene, plan->stiffness, damping);
-    const double allowed = plan_fraction(scene, NAN, NULL);
+    const double usual = plan_fraction(scene, NAN, NULL);
+    const double allowed = plan->stretch[PLAN_LINK] > far ? fmin(usual, 0.5) : usual;
     for (int p = 0; p < plan_precisions; p++) {
         plan_steps *s = &plan->steps[p];
         s->stable_step = stable_step(scene, (plan_precision)p);
+        s->substeps = s->time = NAN;
+        if (isnan(s->stable_step)) /* not representable in single precision */
+            continue;
         s->substeps = ceil(plan_frame / (allowed * s->stable_step));
         const double work = s->substeps * (double)(scene->def.particles + scene->def.links);
         const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * s->substeps;
@@ -286,6 +287,9 @@ void plan_stiffness(preset *scene, double sag, double damping, plan_sag row[plan
     hanging h = examine(scene);
     plan_sag *links = &row[PLAN_LINK], *whole = &row[PLAN_SCENE];
     *links = *whole = (plan_sag){.stiffness = NAN};
+    if (h.stands && sag > most_compression)
+        cli_fail(CLI_USAGE, "--sag: \"%g\" is too much for a scene that stands on its pins; it should be at most %g",
+                 sag, most_compression);
     links->stiffness = search(&h, sag, first_trial(&h, sag), stretch_of_links);
     links->stretch[PLAN_LINK] = stretch_of_links(&h);
     const double height = settled_height(&h);

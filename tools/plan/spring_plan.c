@@ -311,8 +311,13 @@ static spring_params chosen_spring(void)
 {
     const spring_params p = isnan(hertz) ? (spring_params){or_else(mass, 1), stiffness, or_else(damping, 0), 0}
                                          : spring_params_hertz(hertz, or_else(damping_ratio, 0));
+    if (!isnan(hertz) && !spring_params_valid(&p))
+        cli_fail(CLI_USAGE,
+                 "--hertz: \"%g\" is too large or too small; (2 pi hertz)^2 should be a finite number greater than 0",
+                 hertz);
     if (!spring_params_valid(&p))
-        cli_fail(CLI_USAGE, "stiffness/mass and damping/mass of this spring are not finite");
+        cli_fail(CLI_USAGE, "--mass: \"%g\" gives stiffness/mass %g and damping/mass %g; both should be finite", p.mass,
+                 p.stiffness / p.mass, p.damping / p.mass);
     return p;
 }
 
@@ -402,12 +407,14 @@ static void say_rule(cli_table *table, const preset *scene, double stable, doubl
 {
     const char *what;
     const double fraction = plan_fraction(scene, duration, &what);
+    char in_float[80] = "not representable";
+    if (!isnan(stable_float))
+        snprintf(in_float, sizeof in_float, "%.4g s, %.0f", fraction * stable_float,
+                 ceil(plan_frame / (fraction * stable_float)));
     if (stable > 0 && isfinite(stable))
         cli_comment(table,
-                    "steps: for %s, leapfrog may take %g of the stable step: %.4g s, %.0f per frame (float: %.4g "
-                    "s, %.0f).",
-                    what, fraction, fraction * stable, ceil(plan_frame / (fraction * stable)), fraction * stable_float,
-                    ceil(plan_frame / (fraction * stable_float)));
+                    "steps: for %s, leapfrog may take %g of the stable step: %.4g s, %.0f per frame (float: %s).", what,
+                    fraction, fraction * stable, ceil(plan_frame / (fraction * stable)), in_float);
 }
 
 /* Prints a warning if the recommended step is above the stable step: the error is measured in one run. */
@@ -422,14 +429,6 @@ static void say_limit(cli_table *table, const preset *scene)
                     "limit: the step of the plan is longer than the stable step of this method, %.4g s; it may be "
                     "unstable in longer runs.",
                     stable);
-}
-
-static double stable_step_in_float(const preset *scene)
-{
-    spring_scenef *s = start_single(scene);
-    const double step = spring_scenef_stable_step(s, SPRING_LEAPFROG);
-    free(s);
-    return step;
 }
 
 /* Prints the cost of damped links in a step of leapfrog. */
@@ -453,7 +452,7 @@ static void write_plan(cli_table *table, const preset *scene)
     sort_rows();
     say(table);
     if (scene != NULL) {
-        say_rule(table, scene, start_stable_step(scene, SPRING_LEAPFROG), stable_step_in_float(scene));
+        say_rule(table, scene, start_stable_step(scene, SPRING_LEAPFROG), start_stable_step_in_float(scene));
         say_limit(table, scene);
         say_damping(table, scene);
     }
@@ -521,6 +520,9 @@ static void write_sag(cli_table *table, preset *scene)
     plan_stiffness(scene, sag, or_else(damping, 0), row);
     for (int i = 0; i < plan_limits; i++) {
         const plan_steps *const both = row[i].steps;
+        char in_float[80] = "";
+        if (!isnan(both[PLAN_FLOAT].time))
+            snprintf(in_float, sizeof in_float, ", or %.3g s in single precision", both[PLAN_FLOAT].time);
         if (isnan(row[i].stiffness))
             cli_comment(
                 table, "plan: no row for the scene, because its height depends on more than the stretch of its links.");
@@ -528,9 +530,8 @@ static void write_sag(cli_table *table, preset *scene)
             cli_comment(
                 table,
                 "plan: for a %s that is stretched by at most %g, use a stiffness of %.4g N/m and leapfrog with %.0f "
-                "step%s per frame, %.3g s on this machine, or %.3g s in single precision.",
-                what[i], sag, row[i].stiffness, both->substeps, both->substeps == 1 ? "" : "s", both->time,
-                both[PLAN_FLOAT].time);
+                "step%s per frame, %.3g s on this machine%s.",
+                what[i], sag, row[i].stiffness, both->substeps, both->substeps == 1 ? "" : "s", both->time, in_float);
         if (!isnan(row[i].stiffness))
             say_rule(table, scene, both->stable_step, both[PLAN_FLOAT].stable_step);
     }
@@ -539,6 +540,8 @@ static void write_sag(cli_table *table, preset *scene)
     for (int i = 0; i < plan_limits; i++)
         for (int p = 0; p < plan_precisions && !isnan(row[i].stiffness); p++) {
             const plan_steps *const s = &row[i].steps[p];
+            if (isnan(s->stable_step)) /* not representable in single precision */
+                continue;
             cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.0f\t%.17g\t%.4g\t%s", what[i], row[i].stiffness,
                     row[i].stretch[PLAN_SCENE], row[i].stretch[PLAN_LINK], s->stable_step, s->substeps,
                     plan_frame / s->substeps, s->time, precision[p]);
@@ -551,8 +554,11 @@ static void write_scene(void)
     preset scene = chosen_scene(&poke);
     cli_table *table = cli_open_output();
     timing_stamp(table);
-    cli_comment(table, "scene: %s, %zu particles, %zu links", mesh != NULL ? "a mesh" : preset_names[kind],
-                scene.def.particles, scene.def.links);
+    char tethered[40] = "";
+    if (scene.tethers > 0)
+        snprintf(tethered, sizeof tethered, ", %zu tethers", scene.tethers);
+    cli_comment(table, "scene: %s, %zu particles, %zu links%s", mesh != NULL ? "a mesh" : preset_names[kind],
+                scene.def.particles, scene.def.links - scene.tethers, tethered);
     if (!isnan(sag)) {
         write_sag(table, &scene);
     } else {

@@ -2,6 +2,7 @@
 /* Presets and disturbances for programs; see start.h. */
 #include "start.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,6 +43,32 @@ spring_scene *start_definition(const spring_scene_def *def, size_t *bytes)
     return scene;
 }
 
+/* The option that sets a field of a definition. */
+static const char *option_of(const char *field)
+{
+    return strncmp(field, "mass", 4) == 0     ? "mass"
+           : strstr(field, "damping") != NULL ? "damping"
+           : strcmp(field, "drag") == 0       ? "drag"
+           : strcmp(field, "gravity") == 0    ? "gravity"
+                                              : "stiffness";
+}
+
+static bool is_tether(const preset *r, const char *field, size_t index)
+{
+    return strncmp(field, "link", 4) == 0 && index >= r->def.links - r->tethers;
+}
+
+static double value_of(const spring_scene_def *def, const char *field, size_t index)
+{
+    return strcmp(field, "mass") == 0             ? def->mass[index]
+           : strcmp(field, "mass_all") == 0       ? def->mass_all
+           : strcmp(field, "drag") == 0           ? def->drag
+           : strcmp(field, "gravity") == 0        ? def->gravity[index]
+           : strcmp(field, "link.stiffness") == 0 ? def->link[index].stiffness
+           : strcmp(field, "link.damping") == 0   ? def->link[index].damping
+                                                  : (double)NAN;
+}
+
 spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
 {
     spring_scene_def def = r->def;
@@ -54,9 +81,9 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
         cli_fail(CLI_USAGE, "--method: \"%s\" is not for scenes whose links are damped", spring_method_name(m));
     if (status != SPRING_OK)
         cli_fail(CLI_USAGE,
-                 "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
+                 "--%s: %s (number %zu) of this scene is \"%g\"; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
                  "drag/mass should be finite",
-                 field, index);
+                 is_tether(r, field, index) ? "tethers" : option_of(field), field, index, value_of(&def, field, index));
     if (preset_start(r, def.methods, 0, &scene, bytes) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
     return scene;
@@ -85,11 +112,19 @@ spring_scenef *start_single(const preset *r)
     size_t bytes;
     spring_scenef *scene = NULL;
     if (spring_scenef_bytes(&def, &bytes) != SPRING_OK)
-        cli_fail(CLI_FAILED, "this scene is not representable in single precision");
+        return NULL;
     void *memory = malloc(bytes);
     if (memory == NULL || spring_scenef_init(memory, bytes, &def, &scene) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, bytes);
     return scene;
+}
+
+double start_stable_step_in_float(const preset *r)
+{
+    spring_scenef *const scene = start_single(r);
+    const double step = scene != NULL ? spring_scenef_stable_step(scene, SPRING_LEAPFROG) : (double)NAN;
+    free(scene);
+    return step;
 }
 
 double start_stable_step(const preset *r, spring_method m)
@@ -103,8 +138,6 @@ double start_stable_step(const preset *r, spring_method m)
 
 disturbances *start_disturbances(preset *r, const disturbance *list, size_t count)
 {
-    if (count == 0)
-        return NULL;
     disturbances *p = disturbances_new(r, list, count);
     if (p == NULL)
         cli_fail(CLI_FAILED, "no memory for the disturbances on a scene");

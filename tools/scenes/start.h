@@ -18,13 +18,17 @@ spring_scene *start_definition(const spring_scene_def *def, size_t *bytes);
 /** As preset_start(), for one method and for leapfrog, whose stable step is the scale for all methods. */
 spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes);
 
-/** As start_scene() in single precision, for leapfrog and a scene without a callback. */
+/** As start_scene() in single precision, for leapfrog and a scene without a callback. NULL if the scene is not
+    representable in single precision. */
 spring_scenef *start_single(const preset *r);
 
 /** The stable step of a scene at its start. */
 double start_stable_step(const preset *r, spring_method m);
 
-/** Makes a list of disturbances the callback of the scene; NULL if the list is empty. */
+/** The stable step of leapfrog in single precision, without a callback; NaN if the scene is not representable in it. */
+double start_stable_step_in_float(const preset *r);
+
+/** Makes a list of disturbances, which may be empty, the callback of the scene. */
 disturbances *start_disturbances(preset *r, const disturbance *list, size_t count);
 
 /** Adds the default poke if the scene is height-field water, otherwise returns NULL. */

@@ -3,13 +3,14 @@
 #include "sweep/grid.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "common/cli.h"
 
 static const uint64_t most_points = UINT64_C(1) << 53;
 static const uint64_t most_blocks = 16384; /* enough to give work to 10^4 machines; more if blocks would be too large */
@@ -105,10 +106,7 @@ static const char *read_number(const char *text, double *value)
 /* Reads "N", at least 2. */
 static bool read_count(const char *text, uint64_t *count)
 {
-    char *end;
-    errno = 0;
-    *count = strtoull(text, &end, 10);
-    return isdigit((unsigned char)text[0]) && *end == '\0' && errno == 0 && *count >= 2 && *count <= most_points;
+    return cli_parse_count(text, count) && *count >= 2 && *count <= most_points;
 }
 
 /* Reads "A:B:N" or "A:B:log:N". */

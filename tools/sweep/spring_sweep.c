@@ -195,12 +195,13 @@ static void write_text(cli_table *table, const char *text, size_t length)
    another block. */
 static bool copy_block(FILE *in, uint64_t block, cli_table *table)
 {
-    char line[4096], end[50];
-    snprintf(end, sizeof end, "# block %" PRIu64 "\n", block);
-    while (fgets(line, sizeof line, in) != NULL) {
+    char line[4096], end[80];
+    for (uint64_t rows = 0; fgets(line, sizeof line, in) != NULL; rows++) {
         const size_t length = strlen(line);
-        if (length == 0 || line[length - 1] != '\n' || line[0] == '#')
+        if (length == 0 || line[length - 1] != '\n' || line[0] == '#') {
+            snprintf(end, sizeof end, "# block %" PRIu64 ", %" PRIu64 " rows\n", block, rows);
             return strcmp(line, end) == 0;
+        }
         if (table != NULL)
             write_text(table, line, length);
     }
@@ -258,7 +259,7 @@ static void do_blocks(cli_table *table, const grid *g, uint64_t first, uint64_t 
         if (table != NULL)
             write_block(table, g, memory, block);
         if (table != NULL && numbered)
-            cli_row(table, "# block %" PRIu64, block);
+            cli_row(table, "# block %" PRIu64 ", %" PRIu64 " rows", block, grid_block_size(g, block) * g->methods);
         if (done < 0)
             cli_progress((double)(block + 1) / (double)g->blocks);
         else if (write(done, "", 1) < 0)
@@ -322,7 +323,8 @@ static FILE *open_at(const place *file)
 {
     FILE *in = fopen(file->path, "r");
     if (in == NULL || fseeko(in, (off_t)file->next, SEEK_SET) != 0)
-        cli_fail(CLI_IO, "--join: cannot read \"%s\": %s", file->path, strerror(errno));
+        cli_fail(CLI_IO, "cannot read the part \"%s\": %s; another process may have changed it", file->path,
+                 strerror(errno));
     return in;
 }
 
