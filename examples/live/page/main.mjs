@@ -162,14 +162,12 @@ physics.onframe = (frame) => {
 };
 
 let last = performance.now();
-let drawn = last;
 function animate(now) {
     requestAnimationFrame(animate);
     if (state.paused) last = now;
     else if (physics.tick(((now - last) / 1000) * state.speed)) last = now;
+    if (devicePixelRatio !== stage.ratio) stage.sharpen(); // on another screen, with the same size in CSS pixels
     if (fresh) {
-        if (!state.paused) stage.pace(now - drawn);
-        drawn = now;
         stage.draw();
         fresh = false;
     }

@@ -52,8 +52,7 @@ export class Stage {
         this.canvas = canvas;
         this.software = isSoftware();
         const antialias = !this.software;
-        this.sharpness = 1; // rendered pixels per pixel of the screen
-        this.paces = [];
+        this.draws = 0;
         this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias, stencil: true });
         this.renderer.toneMapping = NoToneMapping;
         this.renderer.autoClear = false;
@@ -71,12 +70,13 @@ export class Stage {
             this.lost = false;
             this.draw();
         });
-        new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
-        this.resize();
+        new ResizeObserver(() => this.sharpen()).observe(canvas.parentElement);
+        this.sharpen();
     }
 
     /** Creates a view for each pane. */
     build(info, panes) {
+        this.sharpen();
         for (const pane of this.panes) if (!pane.stale) dispose(pane);
         const theme = themeOf(this.canvas);
         const View = views[info.run.scene];
@@ -97,20 +97,30 @@ export class Stage {
         this.draw();
     }
 
+    /** Starts with all pixels again. */
+    sharpen() {
+        this.sharpness = 1; // rendered pixels per pixel of the screen
+        this.times = [];
+        this.resize();
+    }
+
     resize() {
         const { clientWidth, clientHeight } = this.canvas.parentElement;
-        this.renderer.setPixelRatio(this.sharpness * Math.min(devicePixelRatio, 2));
+        this.ratio = devicePixelRatio;
+        this.renderer.setPixelRatio(this.sharpness * Math.min(this.ratio, 2));
         this.renderer.setSize(clientWidth, clientHeight, false);
         this.draw();
     }
 
-    /** Records the time between two frames [ms]. If frames are slow for long, fewer pixels are rendered. */
-    pace(interval) {
+    /** Records how long drawing took since `start`. If it is slow for long, fewer pixels are rendered. */
+    pace(start) {
         const slow = 22; // [ms]
-        this.paces.push(interval);
-        if (this.paces.length < 90) return;
-        const median = this.paces.sort((a, b) => a - b)[45];
-        this.paces = [];
+        const gl = this.renderer.getContext();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for the end of drawing
+        this.times.push(performance.now() - start);
+        if (this.times.length < 9) return;
+        const median = this.times.sort((a, b) => a - b)[4];
+        this.times = [];
         if (median < slow || this.sharpness < 0.6) return;
         this.sharpness *= 0.85;
         this.resize();
@@ -163,6 +173,7 @@ export class Stage {
     draw() {
         if (this.lost || this.panes.length === 0) return;
         const { renderer } = this;
+        const start = performance.now();
         renderer.setScissorTest(true);
         const height = this.canvas.clientHeight;
         this.panes.forEach(({ scene, view }, i) => {
@@ -174,6 +185,7 @@ export class Stage {
             renderer.clear();
             renderer.render(scene, this.camera);
         });
+        if (++this.draws % 10 === 0) this.pace(start); // not every time, because it waits
     }
 
     // --- what is under a point of the canvas ------------------------------------------------------------------------

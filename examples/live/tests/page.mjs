@@ -371,6 +371,33 @@ await test("every scene is drawn, also in a narrow window, which has no room to 
         assert.ok(drawn >= 0.5 * css && drawn <= 2 * css, `${drawn} pixels for ${css}`);
     }
 });
+await test("fewer pixels are rendered where drawing is slow, not where the physics is slow", async () => {
+    const small = await open(browser, url, { viewport: { width: 320, height: 400 } }, () => {
+        window.ticks = window.drawing = 0; // drawing: its time [ms], in place of that of software rendering
+        WebGL2RenderingContext.prototype.readPixels = () => {
+            for (const end = performance.now() + window.drawing; performance.now() < end;);
+        };
+        const post = Worker.prototype.postMessage;
+        Worker.prototype.postMessage = function (message) {
+            if (message.kind === "tick") window.ticks++;
+            setTimeout(() => post.call(this, message), message.kind === "tick" ? 30 : 0);
+        };
+    });
+    const pixels = () => small.$eval("#canvas", (canvas) => canvas.width / canvas.clientWidth);
+    await small.selectOption("#scene", "rope"); // which is drawn quickly
+    await until("many pictures", () => small.evaluate(() => window.ticks > 100));
+    assert.equal(await pixels(), 1, "with slow physics");
+    await small.evaluate(() => (window.drawing = 30));
+    await until("fewer pixels", async () => (await pixels()) < 1);
+    await small.evaluate(() => (window.drawing = 0));
+    await begin(small);
+    assert.equal(await pixels(), 1, "with a new scene");
+    const devtools = await small.context().newCDPSession(small);
+    const screen = { width: 320, height: 400, deviceScaleFactor: 2, mobile: false };
+    await devtools.send("Emulation.setDeviceMetricsOverride", screen);
+    await until("more pixels", async () => (await pixels()) === 2);
+    await small.context().close();
+});
 await test("a lost context comes back", async () => {
     await choose(page, "water", "leapfrog");
     await page.evaluate(() => {
