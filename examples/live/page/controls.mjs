@@ -51,7 +51,10 @@ export class Controls {
         $("pause").onclick = () => actions.pause();
         $("once").onclick = () => actions.once();
         $("reset").onclick = () => actions.reset();
-        const steps = (n) => actions.steps(this.limited(Math.round(n)));
+        const steps = (n) => {
+            $("steps").value = this.limited(Math.round(n));
+            actions.steps($("steps").valueAsNumber);
+        };
         $("steps").onchange = ({ target }) => steps(target.valueAsNumber);
         $("fewer").onclick = () => steps(state.steps - 1);
         $("more").onclick = () => steps(state.steps + 1);
@@ -203,7 +206,7 @@ export class Controls {
         $("scene").value = state.scene;
         $("method").value = state.method;
         $("other").value = state.other;
-        $("steps").value = state.steps;
+        if (document.activeElement !== $("steps")) $("steps").value = state.steps; // else it may be half typed
         $("speed").value = state.speed;
         $("size").value = this.info.count[0];
         $("damping").value = Math.round(state.damping / dampingUnit[state.scene]);
