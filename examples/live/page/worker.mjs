@@ -7,6 +7,8 @@ import { Lab, listMethods, methodTable } from "./lab.mjs";
 import { presets } from "./presets.mjs";
 
 const longestTick = 0.1; // [s]; with longer ticks the scene runs slower than real time
+const longestComputing = 50; // [ms] of a tick, so that commands do not wait; the time that remains is dropped
+const portion = 16; // steps between reads of the clock, which take about 50 ms with the slowest settings
 const tooFar = 15; // lengths of the scene; beyond, it counts as exploded although the numbers are still finite
 const tearing = 2.2; // length over rest length at which links tear while a particle is held
 const frail = 1.25; // the same for links of a curtain
@@ -128,8 +130,13 @@ function show(kind, more) {
 }
 
 function tick(elapsed) {
-    const due = panes.map((pane) => pane.lab.due(Math.min(elapsed, longestTick), steps, 10 * steps));
-    advanceAll(due[0], false, panes[0]?.lab.pending);
+    const end = performance.now() + longestComputing;
+    let [due] = panes.map((pane) => pane.lab.due(Math.min(elapsed, longestTick), steps, 10 * steps));
+    while (due > 0 && performance.now() < end) {
+        const n = Math.min(due, portion);
+        due -= n;
+        advanceAll(n, false, panes[0].lab.pending + due / (60 * steps));
+    }
     tear();
     show("frame");
 }

@@ -350,6 +350,22 @@ await test("side by side one explodes, and the other goes on", async () => {
     await page.selectOption("#other", "");
 });
 
+await test("a heavy scene runs slower than real time, and the page answers between short ticks", async () => {
+    await page.check("#reference");
+    await choose(page, "jelly", "rk4", 1000);
+    await page.selectOption("#size", "10");
+    await page.selectOption("#other", "rk4");
+    await begin(page);
+    await page.click("#pause");
+    await until("the first tick", async () => (await ask(page, "time")) > 0);
+    const first = await ask(page, "time");
+    await until("the next tick", async () => (await ask(page, "time")) > first);
+    const second = await ask(page, "time");
+    assert.ok(second < 0.01, `${first} s, then ${second} s`);
+    await page.selectOption("#other", "");
+    await page.uncheck("#reference");
+});
+
 // --- windows and failures
 
 await test("every scene is drawn, also in a narrow window, which has no room to scroll sideways", async () => {
