@@ -49,7 +49,8 @@ export class Controls {
         $("method").onchange = ({ target }) => actions.method(0, target.value);
         $("other").onchange = ({ target }) => actions.method(1, target.value);
         $("pause").onclick = () => actions.pause();
-        $("once").onclick = () => actions.once();
+        const failed = () => ""; // the notice says why
+        $("once").onclick = () => actions.once().catch(failed);
         $("reset").onclick = () => actions.reset();
         const steps = (n) => {
             $("steps").value = this.limited(Math.round(n));
@@ -68,7 +69,7 @@ export class Controls {
         $("reference").onchange = (event) => actions.remakeWith("reference", event.target.checked);
         $("hash").onclick = async () => {
             actions.pause(true);
-            $("hash-out").textContent = await actions.hash();
+            $("hash-out").textContent = await actions.hash().catch(failed);
             this.command();
         };
     }
@@ -337,7 +338,7 @@ export class Controls {
     }
 
     repaint() {
-        this.energy.reset(this.panes.length);
-        this.error.reset(this.panes.length);
+        this.energy.draw();
+        this.error.draw();
     }
 }

@@ -8,13 +8,17 @@ import { Stage } from "./stage.mjs";
 
 /* global WORKER */ // defined by bundle.mjs
 
+/** Leaves nothing but a message, since the browser cannot run the page. */
+function giveUp(message) {
+    for (const id of ["bar", "panel"]) document.getElementById(id)?.remove();
+    document.getElementById("notice").textContent = message;
+}
+
 function newStage() {
     try {
         return new Stage(document.getElementById("canvas"));
     } catch (error) {
-        for (const id of ["bar", "panel"]) document.getElementById(id).remove();
-        document.getElementById("notice").textContent =
-            "This page draws with WebGL 2, and this browser does not offer it: there is nothing to see.";
+        giveUp("This page draws with WebGL 2, and this browser does not offer it: there is nothing to see.");
         throw error;
     }
 }
@@ -153,7 +157,8 @@ physics.onmade = (info) => {
     stage.build(info, state.other ? 2 : 1);
     controls.made(info);
 };
-physics.onfailed = (message) => controls.fail(message);
+physics.onfailed = (message) =>
+    physics.works ? controls.fail(message) : giveUp(`This page cannot run: ${message}.`);
 let fresh = false;
 physics.onframe = (frame) => {
     stage.update(frame);

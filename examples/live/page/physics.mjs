@@ -8,6 +8,7 @@ export class Physics {
     constructor(source) {
         this.source = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
         this.asked = 0;
+        this.works = false; // the browser can run the library
         this.onmade = this.onframe = this.onfailed = () => {};
         this.start();
     }
@@ -61,7 +62,10 @@ export class Physics {
     }
 
     hear(message) {
-        if (message.kind === "ready") this.isReady();
+        if (message.kind === "ready") {
+            this.works = true;
+            this.isReady();
+        }
         if (message.kind === "made" && --this.making === 0) this.onmade(message);
         if (message.kind === "frame") {
             if (!message.asked) this.underWay = false;

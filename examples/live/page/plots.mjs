@@ -48,9 +48,10 @@ export class Plot {
         this.lines = Array.from({ length: panes }, () => []);
         this.exploded = this.lines.map(() => false);
         this.plot?.destroy();
+        // Colours are functions, because the colour scheme can change.
         const axis = {
-            stroke: ink("--soft"),
-            grid: { stroke: ink("--line"), width: 1 },
+            stroke: () => ink("--soft"),
+            grid: { stroke: () => ink("--line"), width: 1 },
             ticks: { show: false },
         };
         const shown = (u, splits) =>
@@ -79,7 +80,7 @@ export class Plot {
                 series: [
                     {},
                     ...this.lines.map((_, i) => ({
-                        stroke: ink(i ? "--pane-b" : "--pane-a"),
+                        stroke: () => ink(i ? "--pane-b" : "--pane-a"),
                         width: 2,
                         dash: i ? [7, 4] : undefined,
                         points: { show: false },

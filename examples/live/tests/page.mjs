@@ -257,6 +257,10 @@ await test("the keyboard pokes", async () => {
     for (const key of ["ArrowRight", "ArrowDown", "Enter"]) await page.keyboard.press(key);
     assert.ok(await page.locator("#cursor").isVisible());
     assert.ok((await energyAfter(page, 3)) > 1.05 * calm);
+    const place = () => page.locator("#cursor").boundingBox();
+    const before = await place();
+    await page.keyboard.press("Control+ArrowLeft");
+    assert.deepEqual(await place(), before, "shortcuts of the browser move nothing");
 });
 await test("the keyboard grabs, pulls and lets go", async () => {
     await choose(page, "rope", "leapfrog");
@@ -404,6 +408,7 @@ await test("fewer pixels are rendered where drawing is slow, not where the physi
     await until("many pictures", () => small.evaluate(() => window.ticks > 100));
     assert.equal(await pixels(), 1, "with slow physics");
     await small.evaluate(() => (window.drawing = 30));
+    await small.click("#reset");
     await until("fewer pixels", async () => (await pixels()) < 1);
     await small.evaluate(() => (window.drawing = 0));
     await begin(small);
@@ -470,6 +475,28 @@ await test("a page without WebGL 2 says so", async () => {
     assert.match(await bare.textContent("#notice"), /WebGL 2/);
     await context.close();
 });
+await test("a page without SIMD for WebAssembly says so, and ignores input", async () => {
+    const context = await browser.newContext();
+    const bare = await context.newPage();
+    const thrown = [];
+    bare.on("pageerror", ({ message }) => thrown.push(message));
+    await bare.addInitScript(() => {
+        const plain = URL.createObjectURL;
+        URL.createObjectURL = (blob) => plain(new Blob(["WebAssembly.validate = () => false;", blob]));
+    });
+    await bare.goto(url);
+    await until("it says so", async () => /cannot run: .*SIMD/.test(await bare.textContent("#notice")));
+    assert.equal(await bare.locator("#bar").count(), 0);
+    await bare.click("#canvas");
+    await bare.keyboard.press("Enter");
+    await bare.emulateMedia({ colorScheme: "dark" });
+    await bare.waitForTimeout(100);
+    assert.deepEqual(
+        thrown.filter((message) => !message.includes("SIMD")),
+        [],
+    );
+    await context.close();
+});
 const run = { scene: "cloth", size: 20000 };
 for (const [message, said] of [
     [{ kind: "nonsense" }, /stopped/],
@@ -486,6 +513,12 @@ for (const [message, said] of [
         await ask(frail, "step", 10);
         await frail.evaluate((order) => window.lastWorker.postMessage(order), message);
         await until("it says so", async () => said.test(await frail.textContent("#notice")));
+        const thrown = [];
+        frail.on("pageerror", (error) => thrown.push(`${error}`));
+        await frail.click("#once");
+        await frail.$eval("#hash", (button) => button.click());
+        await frail.waitForTimeout(100);
+        assert.deepEqual(thrown, []);
         await begin(frail);
         await ask(frail, "step", 60);
         const wanted = await native(tool, runOf("cloth"), "leapfrog", presets.cloth.steps, 1);
@@ -509,6 +542,58 @@ await test("it runs by itself, unless less motion is asked for; and is dark wher
     await still.click("#pause");
     await until("it runs when asked", async () => (await ask(still, "time")) > 0);
     await still.context().close();
+});
+
+await test("a change of the colour scheme keeps the plots", async () => {
+    await page.emulateMedia({ colorScheme: "light" });
+    await choose(page, "rope", "leapfrog");
+    await ask(page, "step", 5);
+    await ask(page, "step", 5);
+    // pixels of the plot in the colour of the first pane
+    const drawn = () =>
+        page.evaluate(() => {
+            const canvas = document.querySelector("#energy-plot canvas");
+            const ink = getComputedStyle(document.querySelector(".pane .name")).color.match(/\d+/g);
+            const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            let count = 0;
+            for (let i = 0; i < data.length; i += 4) count += ink.every((each, k) => data[i + k] === +each);
+            return count;
+        });
+    await until("a line", async () => (await drawn()) > 50);
+    await page.emulateMedia({ colorScheme: "dark" });
+    await until("a line in the other colour", async () => (await drawn()) > 50);
+    await page.emulateMedia({ colorScheme: "light" });
+});
+await test("names of methods have a contrast of 4.5, and pressed buttons differ in forced colours", async () => {
+    await page.selectOption("#other", "rk4");
+    await until("two panes", async () => (await page.locator(".pane").count()) === 2);
+    const styles = (what, ...names) =>
+        page.$$eval(
+            what,
+            (all, names) => all.map((each) => names.map((name) => getComputedStyle(each)[name])),
+            names,
+        );
+    // relative luminance, WCAG 2.2
+    const luminance = (colour) => {
+        const parts = colour.match(/[\d.]+/g).map((each) => each / 255);
+        const linear = parts.map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4));
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+    };
+    for (const colorScheme of ["dark", "light"]) {
+        await page.emulateMedia({ colorScheme });
+        for (const colours of await styles(".pane .name", "color", "backgroundColor")) {
+            const [dark, bright] = colours.map(luminance).sort((a, b) => a - b);
+            const contrast = (bright + 0.05) / (dark + 0.05);
+            assert.ok(contrast >= 4.5, `${colours} in ${colorScheme}: ${contrast}`);
+        }
+    }
+    await choose(page, "cloth", "leapfrog");
+    await page.click("#scissors");
+    await page.emulateMedia({ forcedColors: "active" });
+    const [[pressed], [other]] = await styles("#scissors, #poke", "backgroundColor");
+    assert.notEqual(pressed, other);
+    await page.emulateMedia({ forcedColors: "none" });
+    await page.selectOption("#other", "");
 });
 
 // --- bits
