@@ -18,6 +18,8 @@ import { Jelly } from "./scenes/jelly.mjs";
 import { Rope } from "./scenes/rope.mjs";
 import { Water } from "./scenes/water.mjs";
 
+const samples = 9; // of the time of drawing
+
 const views = { water: Water, cloth: Cloth, rope: Rope, jelly: Jelly, curtain: Curtain };
 
 function themeOf(element) {
@@ -112,17 +114,17 @@ export class Stage {
         this.draw();
     }
 
-    /** Records how long drawing took since `start`. If it is slow for long, fewer pixels are rendered. */
+    /** Records how long drawing took since `start`. If it is slow at the start of a scene, fewer pixels are rendered. */
     pace(start) {
         const slow = 22; // [ms]
         const gl = this.renderer.getContext();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for the end of drawing
         this.times.push(performance.now() - start);
-        if (this.times.length < 9) return;
-        const median = this.times.sort((a, b) => a - b)[4];
-        this.times = [];
+        if (this.times.length < samples) return;
+        const median = this.times.sort((a, b) => a - b)[samples >> 1];
         if (median < slow || this.sharpness < 0.6) return;
         this.sharpness *= 0.85;
+        this.times = [];
         this.resize();
     }
 
@@ -185,7 +187,7 @@ export class Stage {
             renderer.clear();
             renderer.render(scene, this.camera);
         });
-        if (++this.draws % 10 === 0) this.pace(start); // not every time, because it waits
+        if (++this.draws % 10 === 0 && this.times.length < samples) this.pace(start); // rarely, because it waits
     }
 
     // --- what is under a point of the canvas ------------------------------------------------------------------------
