@@ -115,6 +115,7 @@ export class Hand {
     }
 
     key(event) {
+        if (event.altKey || event.ctrlKey || event.metaKey) return; // shortcuts of the browser
         const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
         const arrow = arrows[event.key];
         if (!arrow && event.key !== "Enter" && event.key !== "Escape") return;
