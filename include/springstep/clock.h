@@ -40,7 +40,8 @@ typedef struct spring_clock {
  * @param[out]    alpha      in [0, 1): the remaining fraction of a step, for interpolation between the last two states;
  *                           may be NULL. NaN after invalid input.
  * @return number of steps to take now. Invalid input (NULL clock, a time that is not finite, dt <= 0, negative pending
- *         time): 0 steps, *alpha = NaN and an unchanged clock. With valid input, *alpha is never NaN.
+ *         time, a sum of pending and frame_dt that overflows): 0 steps, *alpha = NaN and an unchanged clock. With valid
+ *         input, *alpha is never NaN.
  * @par Accuracy  each frame rounds pending + frame_dt once; the carried-over time is the exact remainder of this sum
  *                divided by dt
  * @par Threads   re-entrant; allocates nothing and keeps no state except the clock

@@ -16,6 +16,8 @@
  *    fused multiply-add, no reordering and no C library function that is not exact. Results are therefore bit-identical
  *    with every compiler, C library and processor that follow IEEE 754. Options that do not follow it, such as
  *    -ffast-math, are rejected at compile time where they can be detected. spring_self_test() detects the others.
+ *    Floating-point exceptions must not be trapped, as after feenableexcept(): some operations whose results are not used
+ *    divide by zero or overflow.
  *  - All or nothing. spring_advance() either succeeds, or leaves the state unchanged and returns the reason.
  *  - dt may be negative. It is never clamped, and never rejected for being unstable. spring_stable_step() returns the
  *    stability limit.

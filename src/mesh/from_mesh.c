@@ -72,10 +72,11 @@ typedef struct weld_table {
     uint32_t *head, *next; /* [vertices] of the list of each hash, of a vertex in a list */
 } weld_table;
 
-/* A cell along one axis. Without a distance, each number is a cell; adding 0 makes -0.0 equal to 0.0. */
+/* A cell along one axis. Without a distance, each number is a cell. Adding 0 makes -0.0 equal to 0.0, since cells are
+   compared by their bits. */
 static double cell_of(const weld_table *t, double x)
 {
-    return t->weld > 0 ? floor(x / (2 * t->weld)) : x + 0.0;
+    return (t->weld > 0 ? floor(x / (2 * t->weld)) : x) + 0.0;
 }
 
 static uint32_t *list_of(const weld_table *t, const double cell[3])

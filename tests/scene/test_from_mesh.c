@@ -167,9 +167,9 @@ static void welding_is_greedy(void)
         m.triangles = 0;
         for (size_t v = 0; v < 3 * m.vertices; v++)
             m.position[v] = shift + (weld > 0 ? random_uniform(-size, size) : (below(4) - 1.0) * 0.1);
-        if (weld == 0)
-            for (size_t v = 0; v < 3 * m.vertices; v++)
-                m.position[v] = m.position[v] == 0 && below(2) ? -0.0 : m.position[v];
+        for (size_t v = 0; v < 3 * m.vertices && (weld == 0 || shift == 0); v++) /* zeros of both signs */
+            if (m.position[v] == 0 || (weld > 0 && below(8) == 0))
+                m.position[v] = below(2) ? -0.0 : 0.0;
         CHECK(read_mesh(&m, weld, &r) == SPRING_OK && r.links == 0, "vertices alone");
         static uint32_t first[most];
         for (uint32_t v = 0; v < m.vertices; v++) {
