@@ -3,10 +3,11 @@
 import { Plot } from "./plots.mjs";
 import { presets, sentences } from "./presets.mjs";
 
+/* global REPORTED */ // whether tools/report was run, defined by bundle.mjs
+
 const $ = (id) => document.getElementById(id);
 const names = { water: "Water", cloth: "Cloth", rope: "Rope", jelly: "Jelly", curtain: "Curtain" };
 const dampingUnit = { water: 5, cloth: 0.01, rope: 0.3, jelly: 0.01, curtain: 0.01 }; // [N s/m] per notch
-const report = "../report/index.html"; // relative to the page, as written by tools/report
 const drawEvery = 150; // [ms] numbers and plots
 
 function option(value, text, disabled = false) {
@@ -105,8 +106,11 @@ export class Controls {
         const sizes = presets[state.scene].sizes;
         $("size").replaceChildren(...sizes.map((size) => option(size, this.sizeText(size))));
         const [sentence, figure] = sentences[state.scene];
-        const link = element("a", { href: `${report}#${figure}`, textContent: "Measured in the report" });
-        $("sentence").replaceChildren(`${sentence} `, link, ".");
+        $("sentence").textContent = sentence;
+        if (REPORTED) {
+            const link = element("a", { href: `../report/${figure}`, textContent: "Measured in the report" });
+            $("sentence").append(" ", link, ".");
+        }
         this.buildActions();
         this.buildPanes();
         const panes = state.other ? 2 : 1;

@@ -27,22 +27,22 @@ export function commandOf(run, method, steps, duration) {
 export const sentences = {
     water: [
         "Poke it, let it rain, drop the ball. Then choose Euler: the water explodes, where leapfrog stays calm with the same work. With 300 steps a frame you can watch Euler's waves grow.",
-        "water-euler-explodes",
+        "index.html#water-euler-explodes",
     ],
     cloth: [
         "Pull a fold, blow, or pull hard until it tears. Then take fewer steps a frame: up to the stable step nothing happens, not far above it leapfrog shreds the cloth, and Runge–Kutta 4 is next.",
-        "cloth",
+        "evidence.html#cloth",
     ],
     rope: [
         "Swing it by its end. Then give it a heavy end, ten thousand times as heavy as a link, and pull that: it stays a rope, and its energy stays. What the weight costs is steps: take fewer, and see.",
-        "rope",
+        "evidence.html#rope",
     ],
     jelly: [
         "Pull a corner and let go. Put Euler beside leapfrog: the same springs, the same steps, and one of them tears itself apart.",
-        "scene-energy",
+        "evidence.html#scene-energy",
     ],
     curtain: [
         "Press on it to push a sphere through, and drag it to the sides. Links pull and never push, they tear where they get too long, and no particle passes through the sphere, however fast it is.",
-        "contacts",
+        "evidence.html#contacts",
     ],
 };

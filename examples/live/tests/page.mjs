@@ -4,10 +4,13 @@
 //
 // usage: node page.mjs FOLDER SPRING-SCENE     the output folder of tools/live
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 
-import { presets } from "../page/presets.mjs";
+import { presets, sentences } from "../page/presets.mjs";
 import { done, launch, native, open, pokeOf, test, until } from "./harness.mjs";
 
 const [folder, tool] = process.argv.slice(2, 4).map((path) => resolve(path));
@@ -594,6 +597,37 @@ await test("names of methods have a contrast of 4.5, and pressed buttons differ 
     assert.notEqual(pressed, other);
     await page.emulateMedia({ forcedColors: "none" });
     await page.selectOption("#other", "");
+});
+
+// --- links
+
+const root = fileURLToPath(new URL("../../..", import.meta.url));
+await test("the page links to the report only if that exists", () => {
+    const scratch = mkdtempSync(join(tmpdir(), "live-"));
+    const [live, report] = ["live", "report"].map((name) => join(scratch, name));
+    const links = () => {
+        execFileSync("node", [join(root, "examples/live/bundle.mjs"), live]);
+        return readFileSync(join(live, "index.html"), "utf8").includes("../report/");
+    };
+    try {
+        mkdirSync(live);
+        assert.equal(links(), false);
+        mkdirSync(report);
+        writeFileSync(join(report, "index.html"), "");
+        assert.equal(links(), true);
+    } finally {
+        rmSync(scratch, { recursive: true });
+    }
+});
+await test("the links lead to figures of the report", () => {
+    const folder = join(root, "plots");
+    const text = { index: "", evidence: "" }; // the templates of each page
+    for (const name of readdirSync(folder).filter((each) => each.endsWith(".md.in")))
+        text[name === "index.md.in" ? "index" : "evidence"] += readFileSync(join(folder, name), "utf8");
+    for (const [, link] of Object.values(sentences)) {
+        const [, page, figure] = link.match(/^(\w+)\.html#(.+)$/);
+        assert.ok(text[page].includes(`figure('${figure}'`), link);
+    }
 });
 
 // --- bits
