@@ -557,7 +557,9 @@ await test("a change of the colour scheme keeps the plots", async () => {
         page.evaluate(() => {
             const canvas = document.querySelector("#energy-plot canvas");
             const ink = getComputedStyle(document.querySelector(".pane .name")).color.match(/\d+/g);
-            const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+            copy.drawImage(canvas, 0, 0);
+            const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
             let count = 0;
             for (let i = 0; i < data.length; i += 4) count += ink.every((each, k) => data[i + k] === +each);
             return count;
