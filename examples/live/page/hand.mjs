@@ -41,7 +41,7 @@ export class Hand {
     }
 
     down(event) {
-        if (this.doing || event.button > 0) return;
+        if (this.stopped || this.doing || event.button > 0) return;
         this.cursor.hidden = true;
         try {
             this.stage.canvas.setPointerCapture(event.pointerId);
@@ -52,7 +52,6 @@ export class Hand {
     }
 
     begin(x, y, by) {
-        if (this.stopped) return;
         const { stage, act } = this;
         const { pane, ray } = stage.rayAt(x, y);
         this.doing = { kind: "turn", pane, by, x, y };
@@ -115,7 +114,8 @@ export class Hand {
     }
 
     key(event) {
-        if (event.altKey || event.ctrlKey || event.metaKey) return; // shortcuts of the browser
+        const shortcut = event.altKey || event.ctrlKey || event.metaKey; // of the browser
+        if (this.stopped || shortcut) return;
         const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
         const arrow = arrows[event.key];
         if (!arrow && event.key !== "Enter" && event.key !== "Escape") return;
@@ -132,7 +132,7 @@ export class Hand {
             this.move(...this.place, "keyboard");
         } else if (event.key === "Enter" && !this.doing) {
             this.begin(...this.place, "keyboard");
-            if (!["hold", "push"].includes(this.doing?.kind)) this.doing = null;
+            if (this.doing.kind !== "hold" && this.doing.kind !== "push") this.doing = null;
         } else this.up("keyboard");
         this.cursor.classList.toggle("holds", this.doing?.by === "keyboard");
         this.cursor.style.left = `${this.place[0]}px`;

@@ -492,6 +492,7 @@ await test("a page without SIMD for WebAssembly says so, and ignores input", asy
     assert.equal(await bare.locator("#bar").count(), 0);
     await bare.click("#canvas");
     await bare.keyboard.press("Enter");
+    assert.ok(!(await bare.locator("#cursor").isVisible()));
     await bare.emulateMedia({ colorScheme: "dark" });
     await bare.waitForTimeout(100);
     assert.deepEqual(
