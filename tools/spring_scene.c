@@ -365,19 +365,18 @@ static double number_of(const state *y, size_t index)
 /* The file of --load. Sets start_time. */
 static state read_state(void)
 {
-    enum { LEAST = 26 * 8, MAGIC = 0, BYTES = 12, T0 = 17, DT, STEPS };
-    const state magic = {(uint8_t[]){"SPRSTATE"}, 8};
+    enum { LEAST = 26 * 8, BYTES = 12, T0 = 17, DT, STEPS };
     state y = {NULL, 0};
     FILE *const file = fopen(load, "rb");
     size_t room = 0, got = 0;
-    bool more = true; /* the header says how long the rest is */
+    bool more; /* the header has the size */
     do {
         y.size += got;
         if (y.size == room)
             y.bytes = realloc(y.bytes, room = 2 * room + 65536);
         if (y.bytes == NULL)
             cli_fail(CLI_FAILED, "no memory for --load");
-        more = y.size < LEAST || (word_of(&y, MAGIC) == word_of(&magic, 0) && y.size <= word_of(&y, BYTES));
+        more = y.size < LEAST || (memcmp(y.bytes, "SPRSTATE", 8) == 0 && y.size <= word_of(&y, BYTES));
     } while (more && file != NULL && (got = fread(y.bytes + y.size, 1, room - y.size, file)) > 0);
     if (file == NULL || ferror(file) != 0 || fclose(file) != 0)
         cli_fail(CLI_IO, "--load: cannot read \"%s\": %s", load, strerror(errno));
@@ -403,11 +402,11 @@ static void load_state(spring_scene *scene, const spring_scene_def *def, const s
         cli_fail(CLI_USAGE, "--load: \"%s\" is not a saved state, or damaged", load);
     for (uint32_t axis = 0; axis < def->axes; axis++)
         if (number_of(y, GRAVITY + axis) != def->gravity[axis])
-            cli_fail(
-                CLI_USAGE,
-                "--gravity: the scene has \"%g\" m/s^2 along an axis, and the state in \"%s\" has %g; both should be "
-                "equal",
-                def->gravity[axis], load, number_of(y, GRAVITY + axis));
+            cli_fail(CLI_USAGE,
+                     "--gravity: the scene has \"%.17g\" m/s^2 along an axis, and the state in \"%s\" has %.17g; both "
+                     "should be "
+                     "equal",
+                     def->gravity[axis], load, number_of(y, GRAVITY + axis));
 }
 
 static void save_state(const spring_scene *scene, cli_table *file)
@@ -612,10 +611,9 @@ static void choose_step(spring_scene *scene, bool disturbed)
     length.dt = default_step(scene, disturbed);
     if (!(length.dt > 0))
         cli_fail(CLI_USAGE,
-                 "--fps: \"%g\"%s%.3g%s gives a default step of 0 s; a larger number, or --dt, should give a step", fps,
-                 disturbed ? " with --push-duration \"" : " with a stable step of ",
-                 disturbed ? disturbance_time : spring_scene_stable_step(scene, SPRING_LEAPFROG),
-                 disturbed ? "\"" : " s");
+                 "--fps: \"%g\" and --push-duration: \"%g\" give a default step of 0 s with a stable step of %.3g s; "
+                 "try --dt",
+                 fps, disturbance_time, spring_scene_stable_step(scene, SPRING_LEAPFROG));
     run_length_settle(&length);
 }
 

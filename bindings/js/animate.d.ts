@@ -4,8 +4,8 @@ import type { Spring, Springs } from "./index.js";
 export interface AnimateOptions {
     /**
      * With `prefers-reduced-motion: reduce`, "jump" (default) places values on their targets, "run" moves them. "run" applies to
-     * the spring, for all functions that draw it. If rest itself leads to a new target, by onRest or `finished`, a value jumps to
-     * it half a second later, so that it does not flash.
+     * the spring, for all functions that draw it. If rest leads to the next target, by onRest or `finished`, values would jump in
+     * each frame: do not start such an animation.
      */
     reducedMotion?: "jump" | "run";
 }

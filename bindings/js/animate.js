@@ -10,10 +10,6 @@ const nextFrame = (frame) =>
         : setTimeout(() => frame(performance.now()), 1000 / 60);
 const isReduced = () => globalThis.matchMedia?.("(prefers-reduced-motion: reduce)").matches;
 
-/** [ms] With reduced motion, the shortest time between jumps of a spring that starts again whenever it rests: flashes that are
- *  more frequent than three times a second are dangerous. */
-const pause = 500;
-
 /** An error of one spring must not stop the others. */
 function report(error) {
     if (globalThis.reportError) reportError(error);
@@ -29,9 +25,7 @@ export function animator({
 } = {}) {
     check(typeof request === "function", "request", "a function", request, TypeError);
     check(now === null || typeof now === "function", "now", "a function or null", now, TypeError);
-    // Of each spring: functions that draw it, the time of its last frame, until when a jump has to wait, whether a new target is
-    // set by what waited for rest, whether it was changed in a frame, and the error of its last step.
-    const entries = new WeakMap();
+    const entries = new WeakMap(); // { spring, draws, time, stale, failure } of a spring
     const moving = new Set();
     let requested = false;
 
@@ -42,7 +36,6 @@ export function animator({
 
     function wake(entry) {
         entry.stale = true;
-        entry.rest = entry.restarts ? entry.time + pause : 0;
         if (moving.has(entry)) return;
         entry.failure = null;
         entry.time = now ? now() : null; // of the start, so that no frame is too long
@@ -63,29 +56,13 @@ export function animator({
         if (moving.size > 0) schedule();
     }
 
-    /** Callbacks of onRest, and code that awaits `finished`, may set a new target, which must wait before it is jumped to. */
-    function finish(entry) {
-        queueMicrotask(() => {
-            entry.restarts = true;
-            setTimeout(() => (entry.restarts = false));
-        });
-        entry.restarts = true;
-        try {
-            entry.spring.finish();
-        } finally {
-            entry.restarts = false;
-        }
-    }
-
     /** Advances and draws one spring, and returns whether it moves on. */
     function advance(entry, dt, reduced) {
         const { spring, draws } = entry;
         entry.stale = false;
         let failure = null; // the message of step(), which is reported once if it fails in each frame; "": onRest() failed
-        const jumps = reduced && ![...draws].some(({ runs }) => runs);
-        if (jumps && entry.time < entry.rest) return true;
         try {
-            if (jumps) finish(entry);
+            if (reduced && ![...draws].some(({ runs }) => runs)) spring.finish();
             else spring.step(dt);
         } catch (error) {
             failure = error instanceof RangeError ? error.message : "";
@@ -111,15 +88,7 @@ export function animator({
         check(known, "reducedMotion", '"jump" or "run"', reducedMotion, TypeError);
         let entry = entries.get(spring);
         if (!entry) {
-            entry = {
-                spring,
-                draws: new Set(),
-                time: null,
-                rest: 0,
-                restarts: false,
-                stale: false,
-                failure: null,
-            };
+            entry = { spring, draws: new Set(), time: null, stale: false, failure: null };
             watch(spring, () => wake(entry));
             entries.set(spring, entry);
         }

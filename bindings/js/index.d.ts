@@ -181,7 +181,10 @@ export declare class Springs {
     /** Changes the options that are given, as Spring.set(). */
     set(options: SpringsChanges): void;
 
-    /** Ends all motions, as finish() of Spring. If a target is not finite, that value keeps its state, and finish() throws a RangeError. */
+    /**
+     * Ends all motions, as finish() of Spring. If a target is not finite, or a value without stiffness, that value keeps its state,
+     * and finish() throws a RangeError.
+     */
     finish(): void;
 
     /**

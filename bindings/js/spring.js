@@ -103,7 +103,7 @@ export class Spring {
         this.#settings = settings(options, this.#settings.given);
         ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         if (!this.#settled) changed(this);
-        else if (this.#value !== this.#target) this.#moves(); // it had no stiffness
+        else if (this.#value !== this.#target && this.#settings.p.omega2) this.#moves(); // it had no stiffness
     }
 
     jump(value) {

@@ -97,7 +97,8 @@ export class Springs {
     /** Without stiffness, a value rests anywhere. */
     #rests(i) {
         if (this.#velocity[i] !== 0 || this.#targetVelocity[i] !== 0) return false;
-        return this.#value[i] === this.#target[i] || !(this.#propagator(i).omega2 > 0);
+        const away = this.#value[i] - this.#target[i];
+        return away === 0 || (isNumber(away) && !this.#propagator(i).omega2);
     }
 
     get onRest() {
@@ -111,6 +112,8 @@ export class Springs {
 
     set(options) {
         const given = merged(options, this.#given);
+        for (let i = 0; this.#settings && i < this.#value.length; i++)
+            if (this.#rests(i)) this.#targets[i] = NaN; // if this gives it stiffness, a motion begins
         this.#settings = settingsOf(given, this.#value.length);
         this.#given = given;
         this.#relative = given.restDelta == null || given.restSpeed == null;
@@ -122,12 +125,18 @@ export class Springs {
         this.#failed = -1;
         for (let i = 0; i < this.#value.length; i++) {
             if (this.#rests(i)) continue;
-            if (!isNumber(0 * this.#target[i] + 0 * this.#targetVelocity[i])) {
+            const [x, v, goal, speed] = [
+                this.#value[i],
+                this.#velocity[i],
+                this.#target[i],
+                this.#targetVelocity[i],
+            ];
+            const place = this.#propagator(i).restPlace(x, v - speed, goal);
+            if (!isNumber(place + 0 * goal + 0 * speed)) {
                 if (this.#failed < 0) this.#failed = i;
                 continue;
             }
-            const [x, v, speed] = [this.#value[i], this.#velocity[i], this.#targetVelocity[i]];
-            this.#value[i] = this.#propagator(i).restPlace(x, v - speed, this.#target[i]);
+            this.#value[i] = place;
             this.#velocity[i] = speed;
             if (this.#velocity[i] === 0) this.#rested.push(i);
         }

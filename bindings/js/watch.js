@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Listeners of springs that may begin to move. The loop of animate.js is one. Its copy of this file may be another one than
-// that of the springs, if a page has two copies of the package, so names are symbols of the global registry.
+// Listeners of springs that may begin to move. The loop of animate.js is one. If a page has two copies of the package, the loop
+// and the springs may use different copies of this file. The names are therefore symbols of the global registry.
 
 /** The name of a method of Springs that returns whether steps would still change a value. */
 export const moves = Symbol.for("springstep.moves");

@@ -14,13 +14,14 @@
 #define SPRING_SOVERSION "0.4"
 
 /** @def SPRING_API
- * Marks a public function, which a shared library exports. Define it as nothing, and compile with -fvisibility=hidden,
- * to hide the library inside a shared library of your own. */
-#ifdef SPRING_API
-#elif defined(_WIN32) && defined(SPRING_BUILD_DLL)
+ * Marks a public function, which a shared library exports. Define SPRING_HIDDEN to hide the two files inside a shared
+ * library of your own. */
+#if defined(_WIN32) && defined(SPRING_BUILD_DLL)
 #define SPRING_API __declspec(dllexport)
 #elif defined(_WIN32) && defined(SPRING_DLL) /* for programs that use the DLL; optional, avoids an indirect call */
 #define SPRING_API __declspec(dllimport)
+#elif defined(__GNUC__) && !defined(_WIN32) && defined(SPRING_HIDDEN)
+#define SPRING_API __attribute__((visibility("hidden")))
 #elif defined(__GNUC__) && !defined(_WIN32)
 #define SPRING_API __attribute__((visibility("default")))
 #else

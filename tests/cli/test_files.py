@@ -208,11 +208,15 @@ def test_dev_stdout_appends_where_standard_output_does(older):
 
 
 def test_names_of_open_files_keep_what_they_have(older):
-    for name, redirected in [('/dev/fd/1', 'stdout'), ('/dev/stderr', 'stderr')]:
-        older.write_text('older\n')
-        with open(older, 'a', encoding='ascii') as log:
+    rows = run(ORDER, *SHORT[ORDER]).stdout
+    for name, redirected in [('/dev/fd/1', 'stdout'), ('/dev/stderr', 'stderr'), ('/proc/self/fd/2', 'stderr')]:
+        with open(older, 'w', encoding='ascii') as log:
+            log.write('older\n')
+            log.flush()
             run(ORDER, *SHORT[ORDER], '-o', name, **{redirected: log})
-        assert older.read_text() == 'older\n' + run(ORDER, *SHORT[ORDER]).stdout
+            log.seek(0, os.SEEK_CUR)
+            os.write(log.fileno(), b'newer\n')
+        assert older.read_text() == 'older\n' + rows + 'newer\n'
     is_failure(run(RUN, *SHORT[RUN], '--every', '1', '--envelope', '/dev/fd/1'), 2, '--envelope', '"/dev/fd/1"', 'another file')
 
 

@@ -410,8 +410,10 @@ def test_the_rule_for_steps(options, fraction, words):
 @pytest.mark.parametrize('options', ['--sag 0.3 --scene cloth --size 13', '--sag 1 --scene rope --damping 3'])
 def test_links_of_more_than_twice_their_length(options):
     """Half of the stable step where links are longer than that, and 0.9 where they are not."""
-    rows = parse(run(PLAN, *options.split()).stdout)
+    printed = run(PLAN, *options.split()).stdout
+    rows = parse(printed)
     assert {float(row['link_stretch']) > 1 for row in rows} == {False, True}
+    assert ['0.5', '0.9'] == re.findall(r'leapfrog may take (\S+) of the stable step', printed)
     for row in rows:
         allowed = 0.5 if float(row['link_stretch']) > 1 else 0.9
         assert int(row['steps_per_frame']) == math.ceil(1 / 60 / (allowed * float(row['stable_step_s'])))

@@ -128,13 +128,13 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--scene water --axes 2', ['--axes', '"2"', '1 or 3']),
         (SCENE, '--scene water --stretch 1', ['--stretch', '"1"', 'greater than 1']),
         (SCENE, '--scene jelly --size 4000', ['--size', '"4000"', 'more particles or links']),
-        *[(SCENE, f'--{name} {value} --dt 1', [f'--{name}: ', f'"{shown}"', 'should be finite'])
+        *[(SCENE, f'--{name} {value} --dt 1', [f'--{name}', f'"{shown}"', 'should be finite'])
           for name, value, shown in [('mass', '1e-310', '1e-310'), ('stiffness', '1e308', '1e+308'), ('damping', '1e308', '1e+308'),
                                      ('drag', '1e308', '1e+308'), ('tethers', '1e308', 'inf')]],
         *[(SCENE, f'--scene chain {words}', [f'{words.split()[0]}: ', 'not for scenes with one axis', *words.split()[1:]])
           for words in ('--tear 2.5', '--tethers 0.25', '--tension-only')],
         (SCENE, '--fps 1e-320', ['--fps: "9.9', 'step of 0 s']),
-        (SCENE, '--drop-box 0,1 --push-duration 1e-310', ['--push-duration "1e-310"', 'step of 0 s']),
+        (SCENE, '--drop-box 0,1 --push-duration 1e-310', ['--push-duration: "1e-310"', 'step of 0 s']),
         (SCENE, '--frame-rate 1e308 --steps-per-frame 4', ['--frame-rate: "1e+308"', '"4"', 'step of 0 s']),
         (SCENE, '--duration 1e4 --dt 1e-13', ['--dt', '"1e-13"', '2^53 steps', 'at least 1.1']),
         (SCENE, '--duration 1e5', ['--duration: a run of "100000" s', '1e+06 frames', '60 per second', 'below 16666.7 s']),
@@ -174,6 +174,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{PLAN} --error 0.1 --duration 1 --stiffness 1e308 --mass 1e-3', ['--mass: "0.001"', 'stiffness/mass', 'finite']),
         *[(f'{PLAN} --error 0.1 --duration 1 --hertz {value}', [f'--hertz: "{shown}"', 'too large or too small'])
           for value, shown in [('1e300', '1e+300'), ('1e-170', '1e-170')]],
+        (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --damping-ratio 1e308', ['--damping-ratio: "1e+308"', 'too large']),
         *[(f'{PLAN} --presets --{name} 3', [f'--{name}', '"3"', 'not for --presets'])
           for name in ('size', 'mass', 'damping', 'damping-ratio', 'drag')],
         (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --quick', ['--quick', 'without --presets']),

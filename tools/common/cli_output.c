@@ -189,15 +189,30 @@ static void open_temporary(cli_table *table)
     errno = reason;
 }
 
+/* The descriptor that such a name stands for, or -1. Opening the name again would truncate a file. */
+static int descriptor_of(const char *path)
+{
+    int number = -1, end = 0;
+    if (sscanf(path, "/dev/fd/%d%n", &number, &end) == 1 || sscanf(path, "/proc/self/fd/%d%n", &number, &end) == 1)
+        return path[end] == '\0' ? number : -1;
+    return strcmp(path, "/dev/stdout") == 0 ? STDOUT_FILENO : strcmp(path, "/dev/stderr") == 0 ? STDERR_FILENO : -1;
+}
+
 static void open_stream(cli_table *table)
 {
     const char *path = table->name;
+    if (descriptor_of(path) >= 0) {
+        const int copy = dup(descriptor_of(path));
+        table->stream = copy >= 0 ? fdopen(copy, "w") : NULL;
+        if (table->stream == NULL)
+            fail_to_write(table);
+        return;
+    }
     struct stat status;
     const bool exists = stat(path, &status) == 0;
     const bool device = strncmp(path, "/dev/", 5) == 0 && strncmp(path, "/dev/shm/", 9) != 0;
     if (device || (exists && !S_ISREG(status.st_mode))) {
-        /* A device or a pipe is not replaced. A file that has a name under /dev, such as /dev/stderr, keeps its text. */
-        table->stream = fopen(path, exists && S_ISREG(status.st_mode) ? "a" : "w");
+        table->stream = fopen(path, "w"); /* a device or a pipe is not replaced */
     } else if (exists) {
         /* a symbolic link is kept and its target replaced; the file keeps its mode */
         if (access(path, W_OK) == 0 && realpath(path, table->path) != NULL)
@@ -213,17 +228,12 @@ static void open_stream(cli_table *table)
         fail_to_write(table);
 }
 
-static bool is_standard_output(const char *path)
-{
-    return strcmp(path, "/dev/stdout") == 0 || strcmp(path, "/dev/fd/1") == 0 || strcmp(path, "/proc/self/fd/1") == 0;
-}
-
 cli_table *cli_open_file(const char *option, const char *path)
 {
     assert(table_count < sizeof tables / sizeof tables[0]); /* no tool opens more tables */
     cli_table *table = &tables[table_count++];
     *table = (cli_table){.option = option, .name = path != NULL ? path : "/dev/stdout"};
-    if (!is_standard_output(table->name)) {
+    if (descriptor_of(table->name) != STDOUT_FILENO) {
         open_stream(table);
     } else { /* not opened again: that would truncate a file to which it is redirected */
         for (size_t i = 0; i < table_count; i++)

@@ -57,7 +57,7 @@ typedef enum plan_limit { PLAN_SCENE, PLAN_LINK, plan_limits } plan_limit;
 /* The steps of a scene by leapfrog. */
 typedef struct plan_steps {
     double stable_step; /* [s] */
-    double substeps;    /* steps per frame: the fewest that plan_fraction() allows */
+    double substeps;    /* steps per frame: the fewest that plan_fraction() and `most` allow */
     double time;        /* [s] running time of a frame */
 } plan_steps;
 
@@ -65,6 +65,7 @@ typedef struct plan_steps {
 typedef struct plan_sag {
     double stiffness;  /* [N/m] of every link; NaN: the height does not only depend on the stretch of links */
     double stretch[2]; /* by plan_limit: of the scene, and of its most stretched link, in double precision */
+    double most;       /* fraction of the stable step: less if links become longer than twice their rest length */
     plan_steps steps[plan_precisions];
 } plan_sag;
 

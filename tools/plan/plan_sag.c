@@ -266,8 +266,8 @@ static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
     const double far = 1; /* links of twice their rest length */
     set_links(scene, plan->stiffness, damping);
-    const double usual = plan_fraction(scene, NAN, NULL);
-    const double allowed = plan->stretch[PLAN_LINK] > far ? fmin(usual, 0.5) : usual;
+    plan->most = plan->stretch[PLAN_LINK] > far ? 0.5 : 1;
+    const double allowed = fmin(plan_fraction(scene, NAN, NULL), plan->most);
     for (int p = 0; p < plan_precisions; p++) {
         plan_steps *s = &plan->steps[p];
         s->stable_step = stable_step(scene, (plan_precision)p);

@@ -311,6 +311,10 @@ static spring_params chosen_spring(void)
 {
     const spring_params p = isnan(hertz) ? (spring_params){or_else(mass, 1), stiffness, or_else(damping, 0), 0}
                                          : spring_params_hertz(hertz, or_else(damping_ratio, 0));
+    const spring_params undamped = spring_params_hertz(hertz, 0);
+    if (!isnan(hertz) && !spring_params_valid(&p) && spring_params_valid(&undamped))
+        cli_fail(CLI_USAGE, "--damping-ratio: \"%g\" is too large; 4 pi hertz damping_ratio should be finite",
+                 damping_ratio);
     if (!isnan(hertz) && !spring_params_valid(&p))
         cli_fail(CLI_USAGE,
                  "--hertz: \"%g\" is too large or too small; (2 pi hertz)^2 should be a finite number greater than 0",
@@ -402,11 +406,12 @@ static void say(cli_table *table)
                     steps);
 }
 
-/* Prints the rule for the step of leapfrog, with the stable steps [s] of both precisions. */
-static void say_rule(cli_table *table, const preset *scene, double stable, double stable_float)
+/* Prints the rule for the step of leapfrog, at most `most` of the stable step, with the stable steps [s] of both
+   precisions. */
+static void say_rule(cli_table *table, const preset *scene, double most, double stable, double stable_float)
 {
     const char *what;
-    const double fraction = plan_fraction(scene, duration, &what);
+    const double fraction = fmin(most, plan_fraction(scene, duration, &what));
     char in_float[80] = "not representable";
     if (!isnan(stable_float))
         snprintf(in_float, sizeof in_float, "%.4g s, %.0f", fraction * stable_float,
@@ -452,7 +457,7 @@ static void write_plan(cli_table *table, const preset *scene)
     sort_rows();
     say(table);
     if (scene != NULL) {
-        say_rule(table, scene, start_stable_step(scene, SPRING_LEAPFROG), start_stable_step_in_float(scene));
+        say_rule(table, scene, 1, start_stable_step(scene, SPRING_LEAPFROG), start_stable_step_in_float(scene));
         say_limit(table, scene);
         say_damping(table, scene);
     }
@@ -533,7 +538,7 @@ static void write_sag(cli_table *table, preset *scene)
                 "step%s per frame, %.3g s on this machine%s.",
                 what[i], sag, row[i].stiffness, both->substeps, both->substeps == 1 ? "" : "s", both->time, in_float);
         if (!isnan(row[i].stiffness))
-            say_rule(table, scene, both->stable_step, both[PLAN_FLOAT].stable_step);
+            say_rule(table, scene, row[i].most, both->stable_step, both[PLAN_FLOAT].stable_step);
     }
     cli_columns(table, "limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s "
                        "time_per_frame_s precision");

@@ -43,21 +43,6 @@ spring_scene *start_definition(const spring_scene_def *def, size_t *bytes)
     return scene;
 }
 
-/* The option that sets a field of a definition. */
-static const char *option_of(const char *field)
-{
-    return strncmp(field, "mass", 4) == 0     ? "mass"
-           : strstr(field, "damping") != NULL ? "damping"
-           : strcmp(field, "drag") == 0       ? "drag"
-           : strcmp(field, "gravity") == 0    ? "gravity"
-                                              : "stiffness";
-}
-
-static bool is_tether(const preset *r, const char *field, size_t index)
-{
-    return strncmp(field, "link", 4) == 0 && index >= r->def.links - r->tethers;
-}
-
 static double value_of(const spring_scene_def *def, const char *field, size_t index)
 {
     return strcmp(field, "mass") == 0             ? def->mass[index]
@@ -81,9 +66,10 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
         cli_fail(CLI_USAGE, "--method: \"%s\" is not for scenes whose links are damped", spring_method_name(m));
     if (status != SPRING_OK)
         cli_fail(CLI_USAGE,
-                 "--%s: %s (number %zu) of this scene is \"%g\"; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
-                 "drag/mass should be finite",
-                 is_tether(r, field, index) ? "tethers" : option_of(field), field, index, value_of(&def, field, index));
+                 "--mass, --end-mass, --stiffness, --damping, --drag, --tethers: %s (number %zu) of this scene is "
+                 "\"%g\"; mass, "
+                 "1/mass, 2 stiffness/mass, 2 damping/mass and drag/mass should be finite",
+                 field, index, value_of(&def, field, index));
     if (preset_start(r, def.methods, 0, &scene, bytes) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
     return scene;

@@ -249,7 +249,8 @@ export function compareSets(program, count) {
         }
         // Without stiffness, a value rests where it is, with the velocity 0; in C, only on its target, and maybe with -0.
         const zero = stiffness > 0 ? -0 : 0;
-        miscounted += stiffness > 0 && moving !== (status === 0 ? wantMoving : -1);
+        const counts = stiffness > 0 || moving < 0 || status !== 0;
+        miscounted += counts && moving !== (status === 0 ? wantMoving : -1);
         for (let j = 0; j < perSet; j++)
             different +=
                 !Object.is(s.value[j], expected[j]) || !Object.is(s.velocity[j], expected[perSet + j] + zero);

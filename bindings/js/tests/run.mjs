@@ -617,53 +617,12 @@ await test("animate: reduced motion jumps, or as told", async () => {
     delete globalThis.matchMedia;
 });
 
-await test("animate: reduced motion does not flash if rest starts the next motion", async () => {
-    globalThis.matchMedia = () => ({ matches: true });
-    const turn = (spring) => (spring.target = 1 - spring.target);
-    const byCallback = (spring) => (spring.onRest = turn);
-    const byPromise = async (spring) => {
-        for (;;) {
-            await spring.finished;
-            turn(spring);
-        }
-    };
-    for (const [start, options] of [
-        [byCallback, {}],
-        [byPromise, {}],
-        [byPromise, { duration: 5 }],
-    ]) {
-        const it = stage();
-        const spring = new Spring(0, options);
-        let seen = 0;
-        let changes = 0;
-        const stop = it.animate(spring, (value) => {
-            changes += value !== seen;
-            seen = value;
-        });
-        spring.target = 1;
-        start(spring);
-        for (let i = 0; i < 60; i++) {
-            it.frame(1000 / 60);
-            await new Promise((resolve) => setTimeout(resolve, 2));
-        }
-        assert(changes === 2, `${changes} changes in a second`);
-        spring.onRest = null;
-        const target = 2 + spring.target;
-        spring.target = target;
-        it.frame(1000 / 60);
-        assert.strictEqual(seen, target, "other changes need not wait");
-        stop();
-    }
-    delete globalThis.matchMedia;
-});
-
 await test("animate: without requestAnimationFrame it uses a timer", async () => {
     const spring = new Spring(0, { duration: 0.05 });
     const drawn = [];
     const stop = animate(spring, (value) => drawn.push(value));
     spring.target = 1;
     await spring.finished;
-    await new Promise(setTimeout); // the frame in which it rests is drawn, too
     assert(drawn.at(-1) === 1 && spring.value === 1);
     stop();
 });
@@ -809,6 +768,26 @@ await test("without stiffness a value settles where damping stops it", () => {
     undamped.velocity = 1;
     undamped.finish();
     assert(undamped.settled && undamped.value === 7);
+    // Other parameters: it stays at rest without stiffness, and with it moves as another spring from there.
+    let again = 0;
+    undamped.onRest = () => again++;
+    undamped.set({ stiffness: 0, damping: 3 });
+    assert(undamped.settled && undamped.step(0.1) === 7 && again === 0);
+    const stiff = { stiffness: 100, damping: 20 };
+    const [late, fresh] = [new Springs(1, { stiffness: 0, damping: 5 }), new Springs(1, stiff)];
+    late.target[0] = fresh.target[0] = 10;
+    assert(late.step(0.1) === 0);
+    late.set(stiff);
+    let frames = 0;
+    while (fresh.step(1 / 60) > 0) frames += late.step(1 / 60);
+    assert(frames > 10 && late.step(1 / 60) === 0 && late.settled(0));
+    const wrong = new Springs(1, { stiffness: 0, damping: 5 });
+    wrong.target[0] = NaN;
+    assert(!wrong.settled(0));
+    assert.throws(() => wrong.finish(), /target\[0\]/);
+    wrong.target[0] = 0;
+    wrong.value[0] = NaN;
+    assert.throws(() => wrong.finish(), /value\[0\]/);
 });
 
 await test("a loop of another copy of the package finds a change", async () => {
