@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { LINKS = 24, N = LINKS + 1, STEPS = 16, RATE = 480 }; /* steps per update, updates per second */
+enum { LINKS = 24, N = LINKS + 1, STEPS = 5, RATE = 1600 }; /* steps per update, updates per second */
 static const double update = 1.0 / RATE, weight = 60, gravity = 9.81;
 static spring_scene *rope;
 static spring_link link[LINKS];

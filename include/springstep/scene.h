@@ -332,9 +332,10 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * G > 10000 with friction. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of the
  * kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order falls
  * to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about
- * 1.6 sqrt(dt G) times beyond. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
- * called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series
- * is computed twice. A negative dt always uses explicit damping.
+ * 1.6 sqrt(dt G) times beyond. With one evaluation, the error can be ten times as large as just above dt G = 0.6.
+ * Positions, velocities and time are then the whole state: no force is kept. Callbacks are called at t + dt/2. A
+ * callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series is computed twice. A
+ * negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
@@ -433,11 +434,11 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * docs/games.md has a bound with them.
  *
  * At rest without link damping, the stability limit is at least the bound. With leapfrog, symplectic Euler and SRKN6,
- * it is 1.2 to 1.3 times the bound for a height field with structural, shear and bend springs, 1.4 to 1.6 times for
- * such a cloth and 2 times for such a soft body; with RK4 and RKN8 it is larger. It is closer to the bound with fewer
- * springs or under tension: the ratio is 1 for a rope and for a height field of structural springs only, and 1.4 for a
- * cloth that is stretched by half. With heavy damping, the limit may be several times the bound, but not for leapfrog
- * with drag alone.
+ * it is 1.2 to 1.35 times the bound for a height field with structural, shear and bend springs, 1.35 to 1.7 times for
+ * such a cloth, and about 2 times for such a soft body of at least three particles along each edge (two: 1.3 to 1.6);
+ * with RK4 and RKN8 it is larger. It is closer to the bound with fewer springs or under tension: the ratio is 1 for a
+ * rope and for a height field of structural springs only, and 1.4 for a cloth that is stretched by half. With heavy
+ * damping, the limit may be several times the bound, but not for leapfrog with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -777,7 +778,8 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
  * Moves a pinned particle: sets its velocity so that it reaches `target` after `duration`.
  *
  * The scene need not be editable. Link damping sees this velocity. The particle keeps moving at this velocity until the
- * velocity is changed. Each step rounds its position, so after n steps it may be n/2 ulp from the target.
+ * velocity is changed. Each step rounds its position, and the velocity is rounded once, so after n steps it may be
+ * about n/2 + 2 ulp of the largest coordinate on the way from the target.
  *
  * @param[in] target    [axes] [m] position to reach; NULL: the particle stops
  * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(). If the target is

@@ -54,7 +54,7 @@ static void check_count(const char *word)
 {
     const uint64_t untouched = 42;
     uint64_t value = untouched;
-    const bool accepted = cli_parse_count(word, &value);
+    const bool accepted = parse_count(word, &value);
     const double other = strtod(word, NULL);
     if (accepted) {
         must(strspn(word, "0123456789e") == strlen(word), "digits, and e for the power of ten", word);

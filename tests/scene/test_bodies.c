@@ -766,6 +766,70 @@ static void coupled_columns(void)
     }
 }
 
+enum { most_rope = 12 };
+
+typedef struct attached_body {
+    uint32_t particles;
+    double T, omega_T; /* [stable steps] of an update; of the body on the last link */
+    double damping;    /* ratio */
+    uint64_t steps;    /* per update */
+} attached_body;
+
+/* A rigid body that stretches a rope along it, by pull_body() of docs/games.md, is pushed out of balance. Returns its
+   largest distance from balance after 400 of 12 000 updates, relative to that in the first 400. */
+static double attached_amplitude(const attached_body *b)
+{
+    const double k = 1000, m = 0.05, spacing = 0.1, stretch = 1.2, load = k * spacing * (stretch - 1);
+    const uint32_t n = b->particles, last = n - 1;
+    double x[3 * most_rope] = {0}, early = 0, late = 0, pull = load;
+    uint8_t pinned[most_rope] = {1};
+    spring_link link[most_rope];
+    pinned[last] = 1;
+    for (uint32_t i = 0; i < n; i++) {
+        x[3 * i] = i * spacing * stretch;
+        link[i] =
+            (spring_link){.a = i, .b = i + 1, .rest = spacing, .stiffness = k, .damping = b->damping * sqrt(2 * k * m)};
+    }
+    const spring_scene_def def = {
+        .particles = n, .position = x, .pinned = pinned, .mass_all = m, .links = last, .link = link};
+    spring_scene *s = scene_of(&def);
+    const double T = b->T * spring_scene_stable_step(s, SPRING_LEAPFROG), omega = b->omega_T / T,
+                 M = k / (omega * omega);
+    double end[3] = {x[3 * last]}, v = 1e-3 * omega * spacing;
+    for (int i = 0; i < 12000 && late <= 10 * early; i++) {
+        v += T * (load - pull) / M;
+        end[0] += T * v;
+        CHECK(spring_scene_drive(s, last, end, T) == SPRING_OK, "a pinned particle");
+        run(s, SPRING_LEAPFROG, T / (double)b->steps, b->steps);
+        pull = spring_scene_tension(s, last - 1);
+        double *const largest = i < 400 ? &early : &late;
+        *largest = fmax(*largest, fabs(end[0] - x[3 * last]));
+    }
+    free(s);
+    return late / early;
+}
+
+/* Updates of at most twice the stable step, and damping or a small omega T. */
+static void attached_bodies(void)
+{
+    double damped = 0, undamped = 0;
+    for (int i = 0; i < 15; i++) {
+        attached_body b = {.particles = 3 + (uint32_t)random_uniform(0, most_rope - 2),
+                           .T = random_uniform(1, 2),
+                           .omega_T = 0.25,
+                           .damping = 0.01,
+                           .steps = 3 + (uint64_t)random_uniform(0, 6)};
+        damped = fmax(damped, attached_amplitude(&b));
+        b.damping = 0;
+        b.omega_T = 0.1;
+        undamped = fmax(undamped, attached_amplitude(&b));
+    }
+    printf("# amplitude multiplied by up to %.3f with damping, and %.3f without\n", damped, undamped);
+    CHECK_BELOW(damped, 1, "the coupling adds no energy");
+    CHECK_BELOW(undamped, 1.2, "without damping, vibrations beat");
+    CHECK(attached_amplitude(&(attached_body){4, 3, 0.25, 0, 8}) > 10, "with longer updates, a vibration resonates");
+}
+
 /* Two particles joined by a damped link rest on a plane, one above the other. docs/details.md has the excess of RK4. */
 static void damped_link_at_rest(void)
 {
@@ -1305,6 +1369,7 @@ static const test tests[] = {
     {"coupling", coupling},
     {"coupled oscillation", coupled_oscillation},
     {"coupled columns", coupled_columns},
+    {"attached bodies", attached_bodies},
     {"a damped link at rest", damped_link_at_rest},
     {"radius, friction and mask", values_of_particles},
     {"custom bodies", custom_bodies},

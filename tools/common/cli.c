@@ -19,7 +19,7 @@ cli_command cli_asked;
 
 /* ------------------------------------------------------------------------------------------------------ numbers */
 
-bool cli_parse_count(const char *text, uint64_t *value)
+static bool parse_count(const char *text, uint64_t *value)
 {
     if (!isdigit((unsigned char)text[0]))
         return false;
@@ -340,7 +340,7 @@ static bool store(const cli_option *o, const char *value)
     case CLI_FLAG:
         break;
     case CLI_COUNT:
-        return cli_parse_count(value, o->count) && *o->count >= o->least && (o->most == 0 || *o->count <= o->most);
+        return parse_count(value, o->count) && *o->count >= o->least && (o->most == 0 || *o->count <= o->most);
     case CLI_REAL:
         return parse_real(value, o->real);
     case CLI_NOT_NEGATIVE:

@@ -102,9 +102,6 @@ bool cli_given(const void *target);
 #define CLI_PRINTF(which)
 #endif
 
-/** Reads a whole number, which may be written as 1e7. False: the text is something else, or too large. */
-bool cli_parse_count(const char *text, uint64_t *value);
-
 /** Print "program: message", remove unfinished files, and exit. */
 _Noreturn void cli_fail(cli_status status, const char *format, ...) CLI_PRINTF(2);
 

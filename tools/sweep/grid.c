@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-
 static const uint64_t most_points = UINT64_C(1) << 53;
 static const uint64_t most_blocks = 16384; /* enough to give work to 10^4 machines; more if blocks would be too large */
 
@@ -103,10 +101,16 @@ static const char *read_number(const char *text, double *value)
     return end != text && isfinite(*value) ? end : NULL;
 }
 
-/* Reads "N", at least 2. */
+/* Reads "N", at least 2; 1e7 is a whole number, too. */
 static bool read_count(const char *text, uint64_t *count)
 {
-    return cli_parse_count(text, count) && *count >= 2 && *count <= most_points;
+    char *end;
+    const double number = strtod(text, &end);
+    if (!isdigit((unsigned char)text[0]) || text[strspn(text, "0123456789e")] != '\0' || *end != '\0' ||
+        !(number >= 2 && number <= (double)most_points))
+        return false;
+    *count = (uint64_t)number;
+    return true;
 }
 
 /* Reads "A:B:N" or "A:B:log:N". */
