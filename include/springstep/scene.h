@@ -332,7 +332,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * G > 10000 with friction. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of the
  * kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order falls
  * to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about
- * 1.6 sqrt(dt G) times beyond. With one evaluation, the error can be ten times as large as just above dt G = 0.6.
+ * 1.6 sqrt(dt G) times beyond. With one evaluation, the error is two to three times as large as just above dt G = 0.6.
  * Positions, velocities and time are then the whole state: no force is kept. Callbacks are called at t + dt/2. A
  * callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series is computed twice. A
  * negative dt always uses explicit damping.

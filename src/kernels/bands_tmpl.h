@@ -209,7 +209,7 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
                                                                            band->rest + slot * stride_c;
     scalar *const scales = band->direction_scale + slot, *const turnings = scales + s->turning_offset;
     const scalar *const roots = scales + s->root_offset;
-    const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
+    const scalar span = s->turning_time, inverse_span = 1 / (2 * span);
     const size_t together = links_together(axes);
     size_t j = 0;
     for (; j < count; j += together * lanes) {

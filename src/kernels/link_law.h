@@ -13,11 +13,9 @@ static inline double link_tension(double stiffness, double rest, double damping,
 }
 
 /* [m/s] delta/length of scene/exponential_kick.h: how much the rate of a link, divided by its length, is lowered because
-   it turns. across: the square of |vector of the link x its derivative|. span: [s] the time step; 0: without this term */
+   it turns. across: the square of |vector of the link x its derivative|. span: [s] the time step */
 static inline scalar turning_rate(scalar span, scalar inverse_square, scalar across)
 {
-    if (!(span > 0))
-        return 0;
     const scalar angle = span * inverse_square, turn = angle * angle * across;
     const scalar turned = turn < 0 ? 0 : turn > 1 ? 1 : turn;
     return (turned + turned * turned * ((scalar)0.25 + (scalar)0.125 * turned)) * (1 / (2 * span));

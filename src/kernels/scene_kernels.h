@@ -94,7 +94,7 @@ typedef struct scene_links {
     bool isotropic;                 /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
     ptrdiff_t root_offset, turning_offset; /* elements from scene_band.direction_scale to root, and to turning */
-    scalar turning_time;                   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
+    scalar turning_time;                   /* [s] FREEZING_TERMS: the time step */
     scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */
 } scene_links;
 

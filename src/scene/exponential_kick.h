@@ -29,8 +29,7 @@
  *           velocity V, its rate changes by delta = l/(2h) t (1 + t/4 + t^2/8), t = min(1, (h V/l)^2), in half a step:
  *           this is the exact value of a steady rotation, to third order in t. So the rate in r is lower by delta, and
  *           r2 is the acceleration by damping at the rate -2 delta. Without it, damping would multiply the inertia
- *           along turning links. On one axis there is none. With s = 2 it would be of third order in h, and is left
- *           out.
+ *           along turning links. On one axis there is none. With s = 2, m is 1/2.
  * Drag      M is replaced by M (1 + q/2 + q^2/(12 + 2q)), q = h drag/M, and r includes -drag v0. For drag alone, this
  *           is a Pade approximant of e^-q.
  * Limit     For constant Z and stiffness K, stable if h^2 M^-1 K < 4, as without damping: the energy
@@ -269,7 +268,7 @@ SPRING_NOINLINE void add_friction(scene_step *s, const pressed_list *pressed, co
     scene_links links = *s->links;
     bool known = false; /* the damping forces */
     links.terms = DAMPING_TERM;
-    links.turning_weight = s->links->turning_time > 0 ? (scalar)-0.5 : 0; /* as in the residual */
+    links.turning_weight = (scalar)-0.5; /* as in the residual */
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const p = &pressed->list[j];
         const size_t i = p->particle;
@@ -463,9 +462,9 @@ static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed
     m.x0 = x;
     m.x = x1;
     m.max_speed = max_speed;
-    /* b_{s-1} = d_{s-1} r is not stored: the terms that follow from it use r. For s = 2, p = 1 - z/2. */
+    /* b_{s-1} = d_{s-1} r is not stored: the terms that follow from it use r. For s = 2, p = 1 - z/2 and m = 1/2. */
     const bool two = p->terms == 2;
-    series_term t = {0};
+    series_term t = {.e = 1};
     if (!two) {
         t = spring_last_term(p);
         spring_previous_term(p, &t);
@@ -484,7 +483,7 @@ static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed
         term.before_weight = (scalar)(first ? 0 : times);
         term.second_weight = first || second ? 0 : 1;
         term.force_weight = (scalar)weight;
-        links.turning_weight = s->links->turning_time > 0 ? (scalar)(share * t.e / weight) : 0;
+        links.turning_weight = (scalar)(share * t.e / weight);
         m.v = k > 0 ? storage[k % 2] : v1;
         if (!damping_term(s, &links, x, term.before, k > 0 ? kernels->series_term : kernels->last_series_term, &m))
             return false;

@@ -100,7 +100,7 @@ static void choose_damping(scene_step *step, scene_links *links, const method_li
     if (s->roots_dt != step->dt)
         spring_scene_find_roots(s, step->dt, most_damping);
     s->roots_dt = step->dt;
-    links->turning_time = step->damping.terms > 2 ? step->h : 0;
+    links->turning_time = step->h;
 }
 
 /* The contacts of a call. */

@@ -171,19 +171,22 @@ static void print_scene(const char *name, const sheet *s, spring_method m, doubl
            spring_scene_bits(s, m, scale), spring_scenef_bits(s, m, scalef));
 }
 
-/* Link damping far beyond the limit of explicit damping, in scenes with bands, without, and small ones. */
+/* Link damping beyond the limit of explicit damping, in scenes with bands, without, and small ones: far beyond, and where
+   a step evaluates damping once. */
 static void print_heavy_damping(void)
 {
-    for (uint32_t axes = 1; axes <= 3; axes++)
-        for (int kind = 0; kind < 3; kind++) {
-            sheet *const s = make_sheet(axes, kind == 1, true);
-            if (kind == 2)
-                s->links = 12;
-            for (size_t i = 0; i < s->links; i++)
-                s->link[i].damping *= 1e4;
-            static const char *const names[] = {"heavy-rows", "heavy-list", "heavy-few"};
-            print_scene(names[kind], s, SPRING_LEAPFROG, 1, 1);
-        }
+    for (int once = 0; once < 2; once++)
+        for (uint32_t axes = 1; axes <= 3; axes++)
+            for (int kind = 0; kind < 3; kind++) {
+                sheet *const s = make_sheet(axes, kind == 1, true);
+                if (kind == 2)
+                    s->links = 12;
+                for (size_t i = 0; i < s->links; i++)
+                    s->link[i].damping *= once ? 300 : 1e4;
+                static const char *const names[][3] = {{"heavy-rows", "heavy-list", "heavy-few"},
+                                                       {"once-rows", "once-list", "once-few"}};
+                print_scene(names[once][kind], s, SPRING_LEAPFROG, 1, 1);
+            }
 }
 
 /* Bending by rows, columns and diagonals, attachments with rest lengths, and tethers. */

@@ -68,7 +68,7 @@ static double find_roots(plain_kick *k)
 }
 
 /* r and r2 at x and v. force: of the callback, added. */
-static void find_residual(plain_kick *k, const double *x, const double *v, const double *force, bool turns)
+static void find_residual(plain_kick *k, const double *x, const double *v, const double *force)
 {
     const spring_scene_def *def = k->def;
     const uint32_t axes = k->axes;
@@ -92,7 +92,7 @@ static void find_residual(plain_kick *k, const double *x, const double *v, const
             (l != NULL && pulls_only(def, l) && length <= w.rest) || (!linear && length == 0))
             continue;
         double turned = 0, pull[3];
-        if (!linear && turns) {
+        if (!linear) {
             const double t = fmin(1, fmax(0, k->h * k->h * (speed - rate * rate) / square));
             turned = length / (2 * k->h) * t * (1 + t / 4 + t * t / 8);
         }
@@ -146,8 +146,8 @@ static void sum_series(plain_kick *k, double reach, const double *x, double *sum
     const damping_series p = spring_damping_series(reach);
     const double rho = p.terms == 2 ? 1 : p.rho;
     memset(e, 0, sizeof e);
-    if (p.terms == 2) { /* 1 - z/2 = 1/2 + Y/2 for rho = 1 */
-        d[0] = 1;
+    if (p.terms == 2) { /* p = 1 - z/2 = 1/2 + Y/2 for rho = 1, m = 1/2 */
+        d[0] = e[0] = 1;
         d[1] = 0.5;
     } else {
         series_term t = spring_last_term(&p);
@@ -212,7 +212,7 @@ static unsigned plain_step(plain_kick *k, const field *f, bool repeats, state *y
     memcpy(mean, y->v, sizeof mean);
     for (int round = 0; round < (repeats ? 2 : 1); round++) {
         plain_field(f, k->h / 2, k->def->particles, mean, force);
-        find_residual(k, y->x, y->v, force, terms > 2);
+        find_residual(k, y->x, y->v, force);
         sum_series(k, reach, y->x, change);
         for (size_t i = 0; i < count; i++)
             mean[i] = y->v[i] + k->h / 2 * change[i];
