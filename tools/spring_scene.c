@@ -345,7 +345,9 @@ typedef struct state {
     size_t size;
 } state;
 
-/* A word of the header, which docs/details.md describes. */
+/* Words of the header, which docs/details.md describes, and the bytes of the header with the check value. */
+enum { BYTES = 12, T0 = 17, DT, STEPS, GRAVITY = 22, LEAST = 26 * 8 };
+
 static uint64_t word_of(const state *y, size_t index)
 {
     uint64_t word = 0;
@@ -365,7 +367,6 @@ static double number_of(const state *y, size_t index)
 /* The file of --load. Sets start_time. */
 static state read_state(void)
 {
-    enum { LEAST = 26 * 8, BYTES = 12, T0 = 17, DT, STEPS };
     state y = {NULL, 0};
     FILE *const file = fopen(load, "rb");
     size_t room = 0, got = 0;
@@ -391,7 +392,6 @@ static state read_state(void)
    --stiffness, are those of this run. */
 static void load_state(spring_scene *scene, const spring_scene_def *def, const state *y)
 {
-    enum { GRAVITY = 22 };
     const spring_status status = spring_scene_load(scene, y->bytes, y->size);
     if (status == SPRING_EMISMATCH)
         cli_fail(CLI_USAGE,
@@ -403,9 +403,8 @@ static void load_state(spring_scene *scene, const spring_scene_def *def, const s
     for (uint32_t axis = 0; axis < def->axes; axis++)
         if (number_of(y, GRAVITY + axis) != def->gravity[axis])
             cli_fail(CLI_USAGE,
-                     "--gravity: the scene has \"%.17g\" m/s^2 along an axis, and the state in \"%s\" has %.17g; both "
-                     "should be "
-                     "equal",
+                     "--gravity: the scene has \"%.17g\" m/s^2 along an axis, and the state in \"%s\" has %.17g; they "
+                     "should be equal",
                      def->gravity[axis], load, number_of(y, GRAVITY + axis));
 }
 

@@ -205,8 +205,8 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const size_t stride = s->stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
     const int8_t *const occupied = band->occupied + slot;
-    const scalar *const stiffness = band->stiffness + slot * stride_c, *const rest_length =
-                                                                           band->rest + slot * stride_c;
+    const scalar *const stiffness = band->stiffness + slot * stride_c;
+    const scalar *const rest_length = band->rest + slot * stride_c;
     scalar *const scales = band->direction_scale + slot, *const turnings = scales + s->turning_offset;
     const scalar *const roots = scales + s->root_offset;
     const scalar span = s->turning_time, inverse_span = 1 / (2 * span);

@@ -12,7 +12,7 @@ static inline double link_tension(double stiffness, double rest, double damping,
     return stiffness * (length - rest) + damping * rate;
 }
 
-/* [m/s] delta/length of scene/exponential_kick.h: how much the rate of a link, divided by its length, is lowered because
+/* [1/s] delta/length of scene/exponential_kick.h: how much the rate of a link, divided by its length, is lowered because
    it turns. across: the square of |vector of the link x its derivative|. span: [s] the time step */
 static inline scalar turning_rate(scalar span, scalar inverse_square, scalar across)
 {

@@ -251,6 +251,26 @@ static void follows_without_lag(void)
     }
 }
 
+/* With the mean velocities of the target, which has the acceleration a, the spring lags by a (mass/stiffness - dt^2/12):
+   between the ends of frames, the target that it follows is ahead by dt^2 a/12 on average. */
+static void lags_behind_an_acceleration(void)
+{
+    const double accel = 3.7;
+    for (double dt = 1. / 240; dt < 0.11; dt *= 2)
+        for (double damping_ratio = 0.5; damping_ratio < 1.5; damping_ratio += 0.3) {
+            const double mass = 1.3, omega = 4 * acos(-1), stiffness = mass * omega * omega;
+            const spring_params p = {mass, stiffness, 2 * damping_ratio * omega * mass, 0};
+            spring_state s = {0, 0};
+            double before = 0, target = 0;
+            for (int i = 1; i * dt < 4; i++, before = target) {
+                target = accel * (i * dt) * (i * dt) / 2;
+                CHECK(spring_follow(&s, &p, target, (target - before) / dt, dt) == SPRING_OK, "a step");
+            }
+            CHECK_CLOSE(target - s.x, accel * (mass / stiffness - dt * dt / 12), 0.02 * accel * mass / stiffness,
+                        "about: it also responds to the harmonics of the frame rate");
+        }
+}
+
 /* Undamped springs and steps backwards never land, not even a step from the target. */
 static void lands_only_if_it_decays(void)
 {
@@ -393,6 +413,7 @@ int main(int argc, char **argv)
         {"any partition", any_partition},
         {"stops near the target", stops_near_the_target},
         {"follows without lag", follows_without_lag},
+        {"lags behind an acceleration", lags_behind_an_acceleration},
         {"lands only if it decays", lands_only_if_it_decays},
         {"special springs", special_springs},
         {"bad input", bad_input_changes_nothing},

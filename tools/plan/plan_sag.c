@@ -256,11 +256,6 @@ static double search(const hanging *h, double sag, double first, double stretch_
     refuse_sag(sag, last_stiffness, "comes to rest in more than one shape");
 }
 
-static double stable_step(const preset *scene, plan_precision precision)
-{
-    return precision == PLAN_DOUBLE ? start_stable_step(scene, SPRING_LEAPFROG) : start_stable_step_in_float(scene);
-}
-
 /* Computes the steps for a stiffness. */
 static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
@@ -270,7 +265,8 @@ static void add_steps(preset *scene, double damping, plan_sag *plan)
     const double allowed = fmin(plan_fraction(scene, NAN, NULL), plan->most);
     for (int p = 0; p < plan_precisions; p++) {
         plan_steps *s = &plan->steps[p];
-        s->stable_step = stable_step(scene, (plan_precision)p);
+        s->stable_step =
+            p == PLAN_DOUBLE ? start_stable_step(scene, SPRING_LEAPFROG) : start_stable_step_in_float(scene);
         s->substeps = s->time = NAN;
         if (isnan(s->stable_step)) /* not representable in single precision */
             continue;

@@ -67,8 +67,7 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
     if (status != SPRING_OK)
         cli_fail(CLI_USAGE,
                  "--mass, --end-mass, --stiffness, --damping, --drag, --tethers: %s (number %zu) of this scene is "
-                 "\"%g\"; mass, "
-                 "1/mass, 2 stiffness/mass, 2 damping/mass and drag/mass should be finite",
+                 "\"%g\"; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and drag/mass should be finite",
                  field, index, value_of(&def, field, index));
     if (preset_start(r, def.methods, 0, &scene, bytes) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);

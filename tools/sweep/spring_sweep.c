@@ -191,8 +191,8 @@ static void write_text(cli_table *table, const char *text, size_t length)
         cli_row(table, "%.*s", (int)length - 1, text);
 }
 
-/* Copies the rows of a block, or reads them if table is NULL. False: the next block of the file is incomplete, or is
-   another block. */
+/* Copies the rows of a block, or reads them if table is NULL. False: the next block of the file is incomplete, has
+   lost rows, or is another block. */
 static bool copy_block(FILE *in, uint64_t block, cli_table *table)
 {
     char line[4096], end[80];
