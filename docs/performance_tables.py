@@ -78,7 +78,7 @@ def performance():
     others = [(f'Bullet {versions["bullet"]}, one position iteration per step', 'bullet'),
               (f'Chipmunk2D {versions["chipmunk"]}, damped springs (built by `tools/bench/optimised`)', 'chipmunk')]
     ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
-    ratios.append(('XPBD of this repository, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
+    ratios.append(('XPBD, written for this comparison, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
     used = ['engines', 'stiff-forces', *(f'plan-{scene}' for scene in SCENES)]
     processors = {read(name)[0]['processor'] for name in used}
     if len(processors) != 1:
@@ -86,7 +86,7 @@ def performance():
     (processor,) = processors
     return '\n\n'.join([
         table(('scene', 'particles', 'links', 'steps per frame', 'time per frame (`spring-plan`)'), ['---'] * 5, *scenes),
-        table(('', 'time per link and step, relative to leapfrog of this library'), ['---'] * 2, *ratios),
+        table(('', 'time per link and step (leapfrog of this library: 1)'), ['---'] * 2, *ratios),
         f'Measured on one core of an {processor}.'.replace('(R)', ''),
     ])
 
