@@ -38,7 +38,7 @@ static spring_status advance_frame(spring_scene *s, spring_clock *clock, double 
         move_along(s, hand, clock->skipped / (clock->skipped + time));
     spring_scene_drive(s, 0, hand, time);
     const spring_status status = spring_scene_advance(s, SPRING_LEAPFROG, dt, n);
-    if (status != SPRING_OK) /* no step was taken: their time is skipped, too */
+    if (status != SPRING_OK) /* no step was taken: the time of these steps is skipped as well */
         move_along(s, hand, steps / time);
     return status;
 }
