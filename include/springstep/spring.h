@@ -60,9 +60,9 @@ typedef struct spring_params {
 /** The methods. New values are only appended. Tables list the methods in the order of spring_method_at(). */
 typedef enum spring_method {
     SPRING_EULER,    /**< order 1; for comparison: an undamped spring gains energy at every step size */
-    SPRING_LEAPFROG, /**< order 2; one force per step (more in scenes with heavy link damping), bounded energy error of
-                        smooth motion: the default for games and long runs, except with forces perpendicular to the
-                        velocity, see spring_scene_advance() */
+    SPRING_LEAPFROG, /**< order 2; one force per step (in scenes two with callbacks that may use velocities), bounded
+                        energy error of smooth motion: the default for games and long runs, except with forces
+                        perpendicular to the velocity, see spring_scene_advance() */
     SPRING_RK4,      /**< order 4; small error in short runs; an undamped spring slowly loses energy */
     SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error of smooth motion; common in game engines; leapfrog
