@@ -131,7 +131,7 @@ def cape():
               for row in equal if row['solver'] != 'leapfrog' for own in ours if own['stretch'] == row['stretch']]
     (whole,) = [row for row in runs if row['effort'] == 'fraction' and row['fraction'] == '0.9']
     parts = {row['tethers']: row for row in runs if row['effort'] == 'no-figure'}
-    steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('without tethers, too', parts['none'])]
+    steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('also without tethers', parts['none'])]
     return '\n\n'.join([
         table(('solver', 'precision', 'tethers', 'fraction of the stable step', 'stretch 6 % (`spring-work`)', 'stretch 3 %'), ['---'] * 6, *rows),
         table(('compared with', 'stretch', 'time of the first row / time of this solver'), ['---'] * 3, *ratios),

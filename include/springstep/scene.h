@@ -73,7 +73,7 @@ extern "C" {
  * If rest is 0, the link is linear, and damped in all directions: the force on a is
  * stiffness (x_b - x_a) + damping (v_b - v_a).
  *
- * With one axis, the link is linear, too. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
+ * With one axis, the link is also linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
  * force on b is its opposite. */
 typedef struct spring_link {
     uint32_t a;       /**<         index of a particle */
@@ -153,8 +153,8 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 
 /** Promises that the callback does not use velocities. Leapfrog then keeps the forces at the end of a step for the next
    step, which halves the force evaluations; without a callback, it always does. Leapfrog also needs no memory for
-   predicted velocities, unless a link is damped or the scene is editable, so the flag saves memory in scenes that never
-   have a callback, too. The velocities that the callback receives are unspecified. */
+   predicted velocities, unless a link is damped or the scene is editable, so the flag also saves memory in scenes
+   without a callback. The velocities that the callback receives are unspecified. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
@@ -370,7 +370,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain
  * (Omega dt)^2 (tests/scene/test_forces.c).
  *
- * Contacts have order 2 with leapfrog and RK4, also with colliders that turn and accelerate, and with friction across
+ * Contacts have order 2 with leapfrog and RK4, even with colliders that turn and accelerate, and with friction across
  * stops and reversals of direction. Impacts have order 1 if drag, link damping or a callback depends on velocities,
  * because these forces jump. With symplectic Euler, contacts have order 1. See spring_scene_set_colliders(). Colliders
  * do not change the stable step.
@@ -573,7 +573,7 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * (|x| + |at| + size) into the collider in a step, this is treated as a rounding error, and the particle does not
  * bounce.
  *
- * A particle that touches several colliders is kept out of all of them, also in a groove of 0.5 degrees. In a groove of
+ * A particle that touches several colliders is kept out of all of them, even in a groove of 0.5 degrees. In a groove of
  * 90 to 165 degrees without friction, it may keep oscillating at up to 2 g dt. A custom body that is concave
  * counts as several bodies only where it returns several contacts. Links do not collide, so a thin collider can pass
  * between two particles. A step with negative dt does not undo a step.
@@ -645,7 +645,7 @@ typedef struct spring_impulse {
  * spring_scene_advance().
  *
  * They are 0 after a call without steps, spring_scene_init() and spring_scene_set_colliders(). A failed call keeps them.
- * The angular impulse of a capsule or a custom body is about its `at`, too. Impulses are not part of the state: no step
+ * The angular impulse of a capsule or a custom body is about its `at` as well. Impulses are not part of the state: no step
  * reads them. Sums of several calls differ from those of one call in rounding errors.
  *
  * @param[out] out  [count]
@@ -852,7 +852,7 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  * @param[in] bytes  its size
  * @return SPRING_OK; SPRING_EINVAL: NULL; the state is truncated or damaged; or it has a custom body where the scene has
  *         none now, or the reverse; SPRING_EMISMATCH: it is undamaged, but of a scene with another definition, or of
- *         another version of the format. Unless it returns SPRING_OK, nothing is changed, also with
+ *         another version of the format. Unless it returns SPRING_OK, nothing is changed, even with
  *         SPRING_SCENE_NO_UNDO
  */
 SPRING_API spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes);
@@ -1129,7 +1129,7 @@ SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, doubl
  *
  * In ascending order, a vertex is welded to the first particle within the distance `weld`, or becomes a particle
  * itself. A particle is at the position of its first vertex, and particles are numbered in the order of their first
- * vertices. Vertices without a triangle become particles, too. There is one link for each edge, from the particle with
+ * vertices. Vertices without a triangle also become particles. There is one link for each edge, from the particle with
  * the lower index, sorted by a, then by b. Its rest length is the distance of its ends and its stiffness is 1 N/m:
  * scale it. For a sheet of equilateral triangles, stiffness times 1.15 is Young's modulus times the thickness. In a
  * sheet of squares, the factor depends on the direction, strongly if all diagonals are parallel.

@@ -98,7 +98,7 @@ typedef enum spring_status {
     SPRING_EBITS,     /**< the results of a short run are not bit-identical to the expected ones */
     /* returned for scenes: */
     SPRING_EUNSTABLE, /**< in a scene with max_speed, a particle would become faster, or its state would become infinite
-                           or NaN, also by a force that is not finite */
+                           or NaN, including by a force that is not finite */
     /* returned for batches: */
     SPRING_EPARTIAL, /**< some springs of a batch failed and kept their state, and all others advanced */
     /* returned by spring_scene_load(): */
@@ -154,7 +154,7 @@ SPRING_API void spring_step_symplectic_euler(spring_state *s, const spring_param
  *     v' = v + dt/2 (accel - omega2 x - gamma v);   x1 = x + dt v'
  *     v1 = (v' + dt/2 (accel - omega2 x1)) / (1 + gamma dt/2)
  *
- * Second order, also with the implicit damping of the last kick. Time-reversible and symplectic without damping. Stable
+ * Second order, even with the implicit damping of the last kick. Time-reversible and symplectic without damping. Stable
  * for 0 < dt omega < 2 at every damping. For gamma dt > 2 it is stable, but a component of the velocity changes sign at
  * every step and decays slowly; use spring_step_exact() there. For negative dt the implicit kick has a pole at
  * gamma |dt| = 2.
