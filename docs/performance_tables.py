@@ -131,7 +131,7 @@ def cape():
               for row in equal if row['solver'] != 'leapfrog' for own in ours if own['stretch'] == row['stretch']]
     (whole,) = [row for row in runs if row['effort'] == 'fraction' and row['fraction'] == '0.9']
     parts = {row['tethers']: row for row in runs if row['effort'] == 'no-figure'}
-    steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('also without tethers', parts['none'])]
+    steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('without figure and tethers', parts['none'])]
     return '\n\n'.join([
         table(('solver', 'precision', 'tethers', 'fraction of the stable step', 'stretch 6 % (`spring-work`)', 'stretch 3 %'), ['---'] * 6, *rows),
         table(('compared with', 'stretch', 'time of the first row / time of this solver'), ['---'] * 3, *ratios),
@@ -160,7 +160,7 @@ def long_runs():
         lines.append((title, f'{n:.0f}' if n else 'adaptive', f'{two_digits(frame_s * 1e6)} µs', *(f'{error:.2g}' for error in errors),
                       f'{sag:.2f} m', f'{100 * stretch:.2g} %', f'{100 * energy:+.0f} %'.replace('-', '−').replace('−0', '0')))
     return '\n\n'.join([
-        table(('', 'steps per frame', 'time per frame (`spring-work`)', 'error after 0.5 s', 'after 1 s', 'sag', 'stretch', 'change of energy'),
+        table(('', 'steps per frame', 'time per frame (`spring-work`)', 'error after 0.5 s', 'after 1 s', 'depth', 'stretch', 'change of energy'),
               ['---'] * 8, *lines),
         f'Measured on one core of an {comments["processor"]}.'.replace('(R)', ''),
     ])
