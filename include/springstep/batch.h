@@ -12,8 +12,8 @@
  * These rules hold for every function in this file, in addition to the rules in spring.h:
  *  - Determinism. In double precision, advancing spring i is bit-identical to advancing the single spring
  *    {1, omega2[i], gamma[i], accel[i]}, in every batch, at every index and with every instruction set. To use threads,
- *    a batch may therefore be split into ranges. In single precision the same arithmetic is done in float, and the
- *    results do not depend on the index either.
+ *    a batch may therefore be split into ranges. In single precision the arithmetic is done in float, except parts of
+ *    the exact solution (see spring_batch_advance()), and the results do not depend on the index either.
  *  - A feature whose array is NULL is disabled: it is neither read nor computed. A shared array has one element.
  *    docs/performance.md lists the cost of each feature.
  *  - Each call reads and writes the state once, for any number of steps.
@@ -71,8 +71,8 @@ typedef struct spring_batchf {
  * SPRING_EXACT is one evaluation over n dt. If omega2 is shared, and gamma is shared or NULL, its coefficients are
  * computed once, and a spring costs six multiplications and two additions. Otherwise each spring has its own
  * coefficients, also computed with SIMD. In single precision, shared coefficients are computed in double and rounded
- * once, while a spring with its own coefficients is advanced in double and rounded at the end. This is the only case in
- * which sharing changes a result, by rounding errors of the state.
+ * once, while a spring with its own coefficients is advanced in double and rounded at the end. In no other case does
+ * sharing change a result. Here it changes it by rounding errors of the state.
  *
  * The state of a damped spring decays to denormal numbers, below about 1e-308 (1e-38 in float), which are slow on many
  * processors. They are not set to zero, because this would change the results. Leave settled springs out of the batch,
@@ -118,7 +118,7 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
                                                       uint8_t *failed);
 
 /**
- * Advances every spring of a batch that follows a target of its own, by its exact solution, and counts the springs that
+ * Advances a batch in which each spring follows its own target, by the exact solution, and counts the springs that
  * still move.
  *
  *     x[i]'' = accel[i] - omega2[i] (x[i] - target[i]) - gamma[i] x[i]'
@@ -127,7 +127,8 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
  * velocity of 0, and is placed on its target by the same rule. In double precision the result is bit-identical. Its
  * rest position is target[i] + accel[i]/omega2[i], and exactly target[i] without accel. After the step, a spring
  * within x_tol of its rest position whose speed is at most v_tol is placed at its rest position with v = 0. Without
- * stiffness, a spring with a load never rests, and a spring without load rests on its target only.
+ * stiffness, a spring with a load never counts as at rest, and a spring without load counts as at rest only on its
+ * target (unlike in spring_at_rest()).
  *
  * Coefficients are shared as in spring_batch_advance(). As in spring_batch_advance(), each spring fails independently.
  * A spring also fails if its target is not finite. With dt = 0 nothing moves, and the springs are counted in their
@@ -148,11 +149,11 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
 SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double *target, double dt, double x_tol,
                                              double v_tol, size_t *moving);
 
-/** The single-precision version. The rule by which springs are placed on their targets has the ulp of float, FLT_MIN
-   instead of DBL_MIN, and 2^-11 instead of 2^-16. A spring is therefore placed from at most 2304 ulps away, less than
-   0.03 % of the larger of |x| and |rest position|. It may stop before this if slow dt < 2^-11: half-lives above 23 s at
-   60 Hz, 5.9 s at 240 Hz and 0.029 s at 48 kHz. Rest positions are computed in float and tolerances are rounded to
-   float; dt is not rounded. */
+/** The single-precision version. In the rule of spring_follow() by which springs are placed on their targets, the ulp
+   is that of float, and FLT_MIN and 2^-11 replace DBL_MIN and 2^-16. A spring is therefore placed from at most 2304
+   ulps away, less than 0.03 % of the larger of |x| and |rest position|. It may stop before it is placed if slow dt <
+   2^-11: half-lives above 23 s at 60 Hz, 5.9 s at 240 Hz and 0.029 s at 48 kHz. Rest positions are computed in float
+   and tolerances are rounded to float; dt is not rounded. */
 SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
                                               double v_tol, size_t *moving);
 
@@ -166,7 +167,7 @@ SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const floa
  * rest position whose velocity differs from that of its target by at most v_tol is placed at its rest position with the
  * velocity of its target. It counts as moving while that velocity is not 0.
  *
- * The springs are advanced with SIMD. Targets are added, and springs placed on them, spring by spring.
+ * The motion relative to the targets is advanced with SIMD. The rest is done one spring at a time.
  *
  * @param[in] target_velocity  [count] mean velocities of the targets in the step, (target - previous target)/dt [m/s];
  *                             must not overlap x or v. NULL: 0, as in spring_batch_follow()

@@ -16,7 +16,8 @@ extern "C" {
 /** Accumulates frame time that is not yet simulated. Zero-initialise.
  *
  * After the steps of a frame, the simulation is `pending` behind real time. A moving target, such as the hand that holds
- * a rope, must be reached n dt + pending after the start of the n steps, not n dt after it. docs/games.md has the loop. */
+ * a rope, must be reached after n dt + pending, counted from the start of the n steps, not after n dt. docs/games.md
+ * has the loop. */
 typedef struct spring_clock {
     double pending; /**< [s] time carried over to the next frame; always less than one step */
     double dropped; /**< [s] total time dropped because frames required more than max_steps steps */

@@ -20,16 +20,17 @@
  *     free(memory);
  *
  * These rules hold for every function in this file, in addition to the rules in spring.h:
- *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception: a
- *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY needs more memory. docs/details.md lists the bytes of each
- *    feature, and docs/performance.md the time.
- *  - All or nothing. After any status except SPRING_OK the scene is unchanged, except with SPRING_SCENE_NO_UNDO.
+ *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception:
+ *    without SPRING_SCENE_FORCE_IGNORES_VELOCITY, leapfrog may need more memory, even if there is no callback.
+ *    docs/details.md lists the bytes of each feature, and docs/performance.md the time.
+ *  - All or nothing. After any status except SPRING_OK the scene is unchanged, except with SPRING_SCENE_NO_UNDO. (A
+ *    failed step may drop kept forces, which the next step computes again.)
  *  - Snapshots. A scene begins at the first byte of its memory and holds no pointer to itself. To take or restore a
  *    snapshot, copy its bytes with memcpy(). The copy is a working scene at any address that is aligned to 8 bytes, in
  *    the same build of the library, with bit-identical results. Its arrays are aligned to SPRING_SCENE_ALIGN only if
- *    the addresses of both scenes have the same remainder by SPRING_SCENE_ALIGN. Otherwise its steps take longer, with
- *    AVX-512 up to 1.4 times as long (spring-bench --kernel leapfrog_jelly_16_copied). The pointers to the callback and
- *    its user data are copied unchanged.
+ *    the two addresses are equal modulo SPRING_SCENE_ALIGN. Otherwise its steps take longer, with AVX-512 up to 1.4
+ *    times as long (spring-bench --kernel leapfrog_jelly_16_copied). The pointers to the callback and its user data are
+ *    copied unchanged.
  *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
  *    accept a const scene, while no thread changes it.
  *  - No function needs more than 16 KiB of the stack, compiled by gcc 12, gcc 14 or clang 14 with optimisation
@@ -40,8 +41,8 @@
  *    not collide with each other. Links do not collide.
  *
  * spring_scenef_... is the single-precision version, compiled from the same source. It needs about 0.6 of the memory;
- * docs/performance.md compares the time. State and arithmetic are float, except those of contacts that are computed one
- * particle at a time. Definitions, colliders, times, energies and tolerances are double, as are the arrays of
+ * docs/performance.md compares the time. State and arithmetic are float, but contacts that are not computed with SIMD
+ * use double arithmetic. Definitions, colliders, times, energies and tolerances are double, as are the arrays of
  * spring_scenef_get() and spring_scenef_set(). The callback and spring_scenef_getf() use float arrays.
  */
 #ifndef SPRINGSTEP_SCENE_H
@@ -66,9 +67,9 @@ extern "C" {
  *
  *     stiffness (length - rest) + damping rate
  *
- * where rate is the time derivative of the length. A negative tension pushes. If both ends are at the same place, the
- * link has no direction and its force is 0. If the square of the length underflows (lengths below about 1e-160 m, in
- * single precision 1e-21 m), the force is undefined.
+ * where rate is the time derivative of the length. A negative tension pushes. If rest > 0 and both ends are at the same
+ * place, the link has no direction and its force is 0. If the square of the length underflows (lengths below about
+ * 1e-160 m, in single precision 1e-21 m), the force is undefined.
  *
  * If rest is 0, the link is linear, and damped in all directions: the force on a is
  * stiffness (x_b - x_a) + damping (v_b - v_a).
@@ -88,7 +89,8 @@ typedef struct spring_link {
  *
  * They require two or three axes, and are not allowed with RKN8 and SRKN6. spring_scene_set_link() does not change them.
  * @{ */
-/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. Without effect if rest is 0. */
+/** The link pulls and never pushes, like every link of a scene with SPRING_SCENE_TENSION_ONLY. The flag has no effect
+   if rest is 0. */
 #define SPRING_LINK_TENSION_ONLY UINT32_C(1)
 /** A tension-only link that acts only while exactly one of its ends is pinned. It keeps a particle from moving away
    from a pinned particle that it hangs on; see spring_links_tethers(). While it does not act, its tension and its
@@ -109,10 +111,10 @@ typedef struct spring_link {
  * where rate is the time derivative of the length. If rest > 0 and the length is 0, the force is 0. On one axis, the
  * force on particle[i] is -weight[i] (stiffness (d - rest) + damping d').
  *
- * For rest = 0 the spring is linear. It is damped in all directions, and so exerts the external torque -damping d x d'.
- * This brakes the rotation of free bodies: the angular velocity of a free hoop of n particles, whose weights are
- * (1/2, -1, 1/2), decays at the rate (1 - cos(2 pi/n))^2 damping/mass (tests/scene/test_links.c). Use damping to attach
- * a particle, and drag to damp bending of free bodies.
+ * For rest = 0 the spring is linear. It is damped in all directions, and so exerts the external torque -damping
+ * cross(d, d'). This brakes the rotation of free bodies: the angular velocity of a free hoop of n particles, whose
+ * weights are (1/2, -1, 1/2), decays at the rate (1 - cos(2 pi/n))^2 damping/mass (tests/scene/test_links.c). Use
+ * damping to attach a particle, and drag to damp bending of free bodies.
  *
  * SPRING_SCENE_TENSION_ONLY does not concern weighted links. */
 typedef struct spring_weighted_link {
@@ -152,9 +154,9 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
 /** Promises that the callback does not use velocities. Leapfrog then keeps the forces at the end of a step for the next
-   step, which halves the force evaluations; without a callback, it always does. Leapfrog also needs no memory for
-   predicted velocities, unless a link is damped or the scene is editable, so the flag also saves memory in scenes
-   without a callback. The velocities that the callback receives are unspecified. */
+   step, which halves the force evaluations. Without a callback, leapfrog keeps them in any case. Leapfrog also needs no
+   memory for predicted velocities, unless a link is damped or the scene is editable, so the flag also saves memory in
+   scenes without a callback. The velocities that the callback receives are unspecified. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
@@ -180,10 +182,10 @@ typedef enum spring_shape {
 /** Computes the signed distance of a point from the surface of a SPRING_CUSTOM body, and the outward unit normal there.
  *
  * Writes one to three contacts, and returns their number. Return two or three where several parts of the surface are
- * near, as in a valley. The gap is negative inside, however deep. It may be smaller in size than the distance if
- * its sign is right and it changes by no more than the point moves (Lipschitz constant 1), like a height field divided
- * by sqrt(1 + slope^2). Far away, one contact with any lower bound is enough. The function must depend only on its
- * arguments and on data that does not change during a call.
+ * near, as in a valley. The gap is negative everywhere inside the body. Its absolute value may be less than the
+ * distance, if its sign is right and it never changes by more than the point moves (Lipschitz constant 1), like a
+ * height field divided by sqrt(1 + slope^2). Far away, one contact with any lower bound is enough. The function must
+ * depend only on its arguments and on data that does not change during a call.
  *
  * @param[in]  user    the pointer of the collider
  * @param[in]  point   [m] in the frame of the body. With two axes, [2] is 0
@@ -317,9 +319,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * line is evaluated from left to right.
  *
  * Drag is implicit in the kick of symplectic Euler and in the last half kick of leapfrog. In the same half kick of
- * leapfrog, link damping and callbacks use predicted velocities: v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), where a*
- * is the acceleration by the forces of the first half kick and by the implicit drag at v*. Leapfrog is still second
- * order. Held forces act like gravity, in every kick and stage.
+ * leapfrog, link damping and callbacks use predicted velocities: v* = v' + dt/2 a*, v1 = v' + dt/2 a1. Here a* has the
+ * forces of the first half kick and drag at v*, and a1 has the forces at x1 and v*, and drag at v1. Leapfrog is still
+ * second order. Held forces act like gravity, in every kick and stage.
  *
  * Leapfrog with heavy link damping. Explicit link damping is used for dt G <= 0.4 and dt D <= 0.9 (1 - dt^2 L/4), with
  * L as in spring_scene_stable_step(). G is the largest sum of 2 damping/mass over the links of a free particle, and D
@@ -332,15 +334,16 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * G > 10000 with friction. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of the
  * kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order falls
  * to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about
- * 1.6 sqrt(dt G) times beyond. With one evaluation, the error is two to three times as large as just above dt G = 0.6.
- * Positions, velocities and time are then the whole state: no force is kept. Callbacks are called at t + dt/2. A
- * callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, and the series is computed twice. A
- * negative dt always uses explicit damping.
+ * 1.6 sqrt(dt G) times beyond. Just below dt G = 0.6, the error is two to three times as large as just above, where a
+ * second evaluation is added. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
+ * called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, where v1
+ * follows from the first call. The series is then computed twice. A negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
- * with its own sum G, but at most 1. Such a link relaxes within about 30000 mass/(stiffness dt^2) steps. If colliders
- * would pull particles during a kick, the kick is repeated without them.
+ * with its own sum G, but at most 1. A link with reduced damping relaxes within about 30000 mass/(stiffness dt^2)
+ * steps. If a collider would pull particles during a kick, the kick is repeated, with these particles released from the
+ * collider.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
@@ -352,26 +355,25 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * with three to six significant digits: without drag the energy error of smooth motion stays bounded. For one
  * second of a cloth with an error of 1e-3 at the end, it needs about as many force evaluations as RKN8, and fewer than
  * half as many as leapfrog (`spring-work --problem long-cloth`). For such an error in a stiff scene leapfrog needs
- * fewer (`--problem stiff-cloth`). Drag is solved
- * exactly together with the drift, so the order is still 6.
+ * fewer (`--problem stiff-cloth`). Drag is solved exactly together with the drift, so the order is still 6.
  *
- * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4,
- * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the
- * next step. With explicitly damped links, leapfrog keeps the forces at v*. These forces are then part of the state,
- * and a snapshot contains them. They are evaluated again, at v, after spring_scene_set() and spring_scene_transform(), after
+ * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4, eight for RKN8, eleven for SRKN6.
+ * Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the next step. With explicitly damped
+ * links, leapfrog keeps the forces at v*. These forces are then part of the state, and a snapshot contains them. They
+ * are evaluated again, at v, after spring_scene_set() of positions or velocities, after spring_scene_transform(), after
  * a change of links, pins, masses, the callback or the velocity of a pinned particle, and after steps of another
  * method. With a callback that may use velocities, leapfrog keeps no forces and evaluates them twice per step, because
  * the data of the callback may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
- * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass Omega |v| in such a
- * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
- * (Omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency omega, a fraction of about
- * Omega dt (omega dt)^3/(8 sqrt(1 - (omega dt)^2/4)) per step, unless drag/mass exceeds this fraction divided by dt.
- * Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain
- * (Omega dt)^2 (tests/scene/test_forces.c).
+ * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds a force of the size mass
+ * Omega |v| in such a direction, leapfrog gains energy, however small dt is. Without links, its energy grows by the
+ * fraction (Omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency omega, a fraction of
+ * about Omega dt (omega dt)^3/(8 sqrt(1 - (omega dt)^2/4)) per step, unless drag/mass exceeds this fraction divided by
+ * dt. Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain (Omega
+ * dt)^2 (tests/scene/test_forces.c).
  *
  * Contacts have order 2 with leapfrog and RK4, even with colliders that turn and accelerate, and with friction across
- * stops and reversals of direction. Impacts have order 1 if drag, link damping or a callback depends on velocities,
+ * stops and reversals of direction. Impacts have order 1 with drag, link damping or a callback that uses velocities,
  * because these forces jump. With symplectic Euler, contacts have order 1. See spring_scene_set_colliders(). Colliders
  * do not change the stable step.
  *
@@ -387,8 +389,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *         SPRING_EDISABLED: the definition does not enable the method.
  *         SPRING_EUNSUPPORTED: the exact solution; RKN8 or SRKN6 in a scene with link damping or a callback that may
  *         use velocities; Euler in a scene that has colliders now.
- *         SPRING_ENONFINITE: the state or the time would become infinite or NaN; detected in the step in which it
- *         happens.
+ *         SPRING_ENONFINITE: the time or, in a scene without max_speed, the state would become infinite or NaN;
+ *         detected in the step in which it happens.
  *         SPRING_EUNSTABLE, only in a scene with max_speed: the state would become infinite or NaN, or a free particle
  *         would be faster than max_speed along an axis
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
@@ -400,7 +402,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
 SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 /**
- * Returns a lower bound of the stability limit: for 0 < dt < bound, small motion about rest does not grow.
+ * Returns a lower bound of the stability limit: for 0 < dt < bound, small motion about rest does not grow (with SRKN6,
+ * except in two narrow ranges of dt, see below).
  *
  * The bound holds however far links are stretched or compressed, because tension/length <= stiffness. (A compressed
  * scene may buckle with any step.) It follows from three sums over the links of a particle. Each is the largest sum of
@@ -417,7 +420,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *     RK4               2.61/max(sqrt(L), D)
  *     RKN8              min(3.14/sqrt(L), 40/D)
  *     SRKN6             9.07/sqrt(L);  with drag min(8/sqrt(L), 3/D)
- *     Euler             min(drag/K, 2/D) with drag, else 0
+ *     Euler             min(drag/K, 2/D);  2/D if K is 0
  *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = G - drag/(largest mass);  G is D without drag
  *
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
@@ -426,19 +429,19 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    longer than twice its rest length, otherwise up to 0.5;
  *  - with drag/mass of at least 0.1/s, up to 0.9 for soft bodies and sheets with shear springs while no link is longer
  *    than twice its rest length, and up to 0.5 for ropes and other nets;
- *  - half of these if links are tension-only, where tethers do not count;
+ *  - half of these if there are tension-only links other than tethers;
  *  - without damping, 0.5 for smooth motion, 0.25 for violent motion (0.06 for more than a minute if links stretch by
  *    more than a quarter), and 0.1 for tension-only links in runs of up to a minute.
  * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
  * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered;
  * docs/games.md has a bound with them.
  *
- * At rest without link damping, the stability limit is at least the bound. With leapfrog, symplectic Euler and SRKN6,
- * it is 1.2 to 1.35 times the bound for a height field with structural, shear and bend springs, 1.35 to 1.7 times for
- * such a cloth, and about 2 times for such a soft body of at least three particles along each edge (two: 1.3 to 1.6);
- * with RK4 and RKN8 it is larger. It is closer to the bound with fewer springs or under tension: the ratio is 1 for a
- * rope and for a height field of structural springs only, and 1.4 for a cloth that is stretched by half. With heavy
- * damping, the limit may be several times the bound, but not for leapfrog with drag alone.
+ * At rest without link damping, the stability limit may be larger than the bound. With leapfrog, symplectic Euler and
+ * SRKN6, it is 1.2 to 1.35 times the bound for a height field with structural, shear and bend springs, 1.35 to 1.7
+ * times for such a cloth, and about 2 times for such a soft body of at least three particles along each edge (two: 1.3
+ * to 1.6); with RK4 and RKN8 it is larger. It is closer to the bound with fewer springs or under tension: the ratio is
+ * 1 for a rope and for a height field of structural springs only, and 1.4 for a cloth that is stretched by half. With
+ * heavy damping, the limit may be several times the bound, but not for leapfrog with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -557,21 +560,21 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * To set colliders once per frame of length T, give the present pose, the present velocity V of the body, and the
  * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and
  * spin_acceleration. If V is not known, use (next - previous)/(2 T) and (next - 2 present + previous)/T^2, or take the
- * pose and the velocity V that the collider has reached, with the acceleration 16/9 (next - present - V T)/T^2: an
- * error of V then leaves an error of the pose that is 6 % as large after four more frames, while 2 in the place of 16/9
- * would keep the error of V and change its sign in each frame. A velocity without acceleration is enough for bodies
- * that nothing rests on: static friction breaks where the velocity jumps from frame to frame.
+ * pose and the velocity V that the collider has reached, with the acceleration 16/9 (next - present - V T)/T^2: if V
+ * has an error, the error of the pose then changes its sign in each frame, and after four more frames it is 6 % of the
+ * first one. (With 2 instead of 16/9, it would not decrease.) A velocity without acceleration is enough for bodies that
+ * nothing rests on: static friction breaks where the velocity jumps from frame to frame.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
  * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed,
- * in the frame of the body. A bounce therefore has order 2 if no force depends on velocity, and no particle passes
- * through a single collider at any speed (in single precision, if the collider is thicker than 1e-3 of its size and of
- * its distance from the origin). A body that turns by more than about 0.2 rad in a step may cut the path of a fast
- * particle, and a particle may pass around an edge within a step. A capsule whose ends have different velocities turns,
- * too. A particle that static friction can hold is carried along with the motion of the body, at any time step. On the
- * spinning surface of a sphere or a capsule it is held to second order. If an impact moves the particle less than 8 eps
- * (|x| + |at| + size) into the collider in a step, this is treated as a rounding error, and the particle does not
- * bounce.
+ * in the frame of the body. A bounce therefore has order 2 if no force depends on velocity, and no particle, however
+ * fast, passes through a face of a single collider that turns by less than about 0.2 rad in the step (in single
+ * precision, if the collider is thicker than 1e-3 of its size and of its distance from the origin). A fast particle may
+ * pass through a collider that turns further, and a particle may pass around an edge within a step. A capsule whose
+ * ends have different velocities also turns. A particle that static friction can hold is carried along with the motion
+ * of the body, at any time step. On the spinning surface of a sphere or a capsule it is held to second order. If an
+ * impact moves the particle less than 8 eps (|x| + |at| + size) into the collider in a step, this is treated as a
+ * rounding error, and the particle does not bounce.
  *
  * A particle that touches several colliders is kept out of all of them, even in a groove of 0.5 degrees. In a groove of
  * 90 to 165 degrees without friction, it may keep oscillating at up to 2 g dt. A custom body that is concave
@@ -697,8 +700,8 @@ SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t
  *
  * Call it at a fixed interval, such as once per frame, because the result depends on how often the lengths are
  * compared. Links are compared in double precision and visited in the order of their indices. Links that are already
- * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
- * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
+ * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Cutting a link also
+ * cuts each weighted link that contains both of its ends. Use spring_links_components() to find the pieces.
  *
  * Banded links are first compared with SIMD, and one by one only if one of them may be too long. For bands see
  * spring_links_renumber().
@@ -778,8 +781,8 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
  * Moves a pinned particle: sets its velocity so that it reaches `target` after `duration`.
  *
  * The scene need not be editable. Link damping sees this velocity. The particle keeps moving at this velocity until the
- * velocity is changed. Each step rounds its position, and the velocity is rounded once, so after n steps it may be
- * about n/2 + 2 ulp of the largest coordinate on the way from the target.
+ * velocity is changed. The velocity is rounded once, and the position in each step, so after n steps the particle may
+ * miss the target by about n/2 + 2 ulp of the largest coordinate on its way.
  *
  * @param[in] target    [axes] [m] position to reach; NULL: the particle stops
  * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(). If the target is
@@ -790,9 +793,9 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
  */
 SPRING_API spring_status spring_scene_drive(spring_scene *s, size_t particle, const double *target, double duration);
 
-/** Returns the tension of a link [N], including its damping, as in spring_link: positive if the link pulls. At length 0
-    no force acts, and the result is the tension of the stiffness alone. 0 for a slack tension-only link and for a torn
-    link. NaN for NULL and for a link that does not exist. */
+/** Returns the tension of a link [N], including its damping, as in spring_link: positive if the link pulls. With two or
+    three axes, the result at length 0 is the tension of the stiffness alone. 0 for a slack tension-only link and for a
+    torn link. NaN for NULL and for a link that does not exist. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /** @} */
@@ -822,13 +825,14 @@ SPRING_API spring_scene_info spring_scene_describe(const spring_scene *s);
  * the last time step, kept forces (see spring_scene_advance()), held forces, gravity, colliders, the time since they
  * were set, and the colliders that particles touch. The state of an editable scene also has all masses, pins and
  * coefficients of links and weighted links. Saving changes nothing. A call of spring_scene_advance() that fails may
- * drop the forces that are kept, which the next step then computes again. Otherwise, equal states of the same kind of
- * scene have equal bytes, so saved states can be compared. (Fields of colliders that their shape does not use are saved
- * as they were set.)
+ * drop the forces that are kept, which the next step then computes again. Apart from this, equal states of scenes with
+ * the same definition have equal bytes, so saved states can be compared. (Fields of colliders that their shape does not
+ * use are saved as they were set.)
  *
  * @param[out]    out    the state, at any address; NULL: only *bytes is written
- * @param[in,out] bytes  size of out [bytes]; afterwards the size of the state, which may be another one after the next
- *                       step. At most 256 bytes more than 1.1 times the numbers above (tests/scene/test_random.c)
+ * @param[in,out] bytes  size of out [bytes]; afterwards the size of the state, which may change with each step. It is
+ *                       at most 1.1 times the size of the values listed above, plus 256 bytes
+ *                       (tests/scene/test_random.c)
  * @return SPRING_OK; SPRING_EINVAL: the scene or bytes is NULL; SPRING_ENOMEM: out is too small, and only *bytes was
  *         written; SPRING_ENONFINITE: the state was lost in a failed step, see SPRING_SCENE_NO_UNDO
  */
@@ -1051,7 +1055,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  * A band is a set of links with a constant index offset between their ends. A scene evaluates bands faster than
  * unbanded links. The particles of a rope are put in order, and the particles of a sheet in rows, so that their links
  * form bands. In a sheet, this requires that the links along its rows and columns are at most a quarter longer than the
- * shortest link, and that all other links are longer. Other meshes get a small bandwidth.
+ * shortest link, and that all other links are longer. In other meshes, linked particles get indices that differ by
+ * little.
  *
  * Permute other arrays yourself: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
  *
@@ -1086,24 +1091,25 @@ SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, s
 SPRING_API size_t spring_links_components(size_t particles, size_t links, const spring_link *link, uint32_t *component);
 
 /**
- * Makes tethers: a tension-only link (SPRING_LINK_TETHER) from each particle to the pinned particle that it hangs on,
- * as long as the way to it along links. Tethers keep ropes and cloth from stretching at time steps for which their
- * links are soft. A rope of 40 links of 0.05 m that hangs at rest and takes 4 steps per frame of 1/60 s, at half of
- * the stable step, is 0.2 % too long with tethers of fraction 0.05, and 28 % without (tests/scene/test_tethers.c).
+ * Makes tethers: tension-only links (SPRING_LINK_TETHER) from particles to the pinned particles that they hang on. The
+ * rest length of a tether is the length of the shortest way between its ends along links. Tethers keep ropes and cloth
+ * from stretching if their links have to be soft for the time step. A rope of 40 links of 0.05 m that hangs at rest and
+ * takes 4 steps per frame of 1/60 s, at half of the stable step, is 0.2 % too long with tethers of fraction 0.05, and
+ * 28 % without (tests/scene/test_tethers.c).
  *
- * There is one tether for each free particle that links connect with a pinned particle and that no link with stiffness
- * joins to a pinned particle directly. Links without stiffness, tethers of the definition and weighted links do not
- * connect particles. Tethers are in the ascending order of their particles:
+ * A free particle gets one tether if links connect it with a pinned particle, unless one of these links joins it to a
+ * pinned particle directly. Links without stiffness, tethers of the definition and weighted links do not connect
+ * particles. Tethers are in the ascending order of their particles:
  *
  *     a          the free particle
  *     b          the pinned particle with the least sum of rest lengths along links; the first one of several
  *     rest       this sum, times (1 + slack)
- *     stiffness  fraction K, where K is the sum for the particle in spring_scene_stable_step(), without masses
+ *     stiffness  fraction K, where K is the sum of spring_scene_stable_step() for this particle alone
  *     flags      SPRING_LINK_TETHER
  *
- * The largest sum of the stable step grows at most by the factor 1 + fraction: with fraction 0.05, the stable step of
- * leapfrog shrinks by at most 2.5 %. Append the tethers to the links of the definition. When a piece of torn cloth comes
- * off, cut its tethers: see examples/c/curtain.c.
+ * The sum L of spring_scene_stable_step() grows at most by the factor 1 + fraction: with fraction 0.05, the stable step
+ * of leapfrog shrinks by at most 2.5 %. Append the tethers to the links of the definition. When a piece of torn cloth
+ * comes off, cut its tethers: see examples/c/curtain.c.
  *
  * The work is proportional to links times the number of sweeps over them, which is 2 to 10 for sorted ropes and sheets,
  * and at most two more than the links of the longest way for others. Call spring_links_renumber() first for an unsorted
@@ -1112,7 +1118,7 @@ SPRING_API size_t spring_links_components(size_t particles, size_t links, const 
  * @param[in]     def       definition of the scene, without the tethers; two or three axes
  * @param[in]     fraction  > 0; 0.05 is a good value
  * @param[in]     slack     >= 0, relative excess length of the tethers
- * @param[out]    out       [*count] the tethers; NULL: only *count is written
+ * @param[out]    out       [*count] the tethers; NULL: only *count and the work space are written
  * @param[in,out] count     before: number of elements of out; after: number of tethers
  * @param         work      [2*particles] work space, used only during the call
  * @param         distance  [2*particles] [m] work space; afterwards, the first half contains the sum of rest lengths for
@@ -1150,9 +1156,9 @@ SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, doubl
  * @param[in,out] links        before: number of elements of out, of which 3*triangles are always enough; after: number
  *                             of links
  * @param         work         [3*vertices + 6*triangles + 1] work space, used only during the call
- * @return SPRING_OK; SPRING_EINVAL: NULL, a position or `weld` that is not finite, or a triangle without area, also one
- *         that welding makes of a triangle; SPRING_ERANGE: an index of a vertex or a count is too large; SPRING_ENOMEM:
- *         out is too small. After an error nothing is written except the work space and, with SPRING_ENOMEM, *links
+ * @return SPRING_OK; SPRING_EINVAL: NULL, a position or `weld` that is not finite, or a triangle without area, before
+ *         or after welding; SPRING_ERANGE: an index of a vertex or a count is too large; SPRING_ENOMEM: out is too
+ *         small. After an error nothing is written except the work space and, with SPRING_ENOMEM, *links
  */
 SPRING_API spring_status spring_links_from_mesh(size_t vertices, const double *position, size_t triangles,
                                                 const uint32_t *triangle, double weld, uint32_t *particle_of,
@@ -1161,12 +1167,12 @@ SPRING_API spring_status spring_links_from_mesh(size_t vertices, const double *p
 /** @name Links with bending stiffness
  *
  * These functions make weighted links that resist bending of a rod or a sheet that is straight or flat at rest. The
- * forces are linear in the positions, and do not resist stretching: that is for links. With damping_time > 0 they are
- * damped in all directions, see spring_weighted_link.
+ * forces are linear in the positions, and do not resist stretching: add a spring_link for that. With damping_time > 0,
+ * the weighted links are damped in all directions, see spring_weighted_link.
  *
  * Clamps. Two pinned particles next to each other hold the direction of a rod: a segment between pinned particles does
  * not bend, and bending at its end is concentrated on the free side, so the stiffness there is twice as large. Likewise
- * for triangles whose three corners are pinned. Links between pinned particles only are left out.
+ * for triangles whose three corners are pinned. Links whose particles are all pinned are left out.
  *
  * `*count` is the number of elements of `out` before the call, and the number of links after it. If out is NULL, only
  * *count is written.
@@ -1183,7 +1189,7 @@ SPRING_API spring_status spring_links_from_mesh(size_t vertices, const double *p
  * Makes links that resist bending of a rod: hair, a cable, an antenna. For particle i between segments of lengths l1 and
  * l2, the weights of i - 1, i, i + 1 are (l2, -(l1 + l2), l1)/(l1 + l2), and
  *
- *     stiffness = rigidity/l ((l1 + l2)/(l1 l2))^2,   l = (l1 + l2)/2, without segments between pinned particles
+ *     stiffness = rigidity/l ((l1 + l2)/(l1 l2))^2,   l = (l1 + l2)/2, with 0 for a segment between pinned particles
  *
  * which is 4 rigidity/h^3 for segments of length h. The stiffness of the links of a rod of Young's modulus E and
  * cross-section A is E A/h. To clamp the rod at its start, pin the particles 0 and 1.
@@ -1254,8 +1260,8 @@ SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *p
  *                              *count is written
  * @param[in,out] count         at most 3*triangles/2 links
  * @param         work          [particles + 6*triangles + 1] work space, used only during the call
- * @return SPRING_EINVAL also for a triangle without area, and for an edge that more than two triangles or two triangles
- *         with the same corners have
+ * @return SPRING_EINVAL also for a triangle without area, and for an edge of more than two triangles, or of two
+ *         triangles with the same corners
  * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
  *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
  *                squares with parallel diagonals, and about 4 times for irregular meshes. Long rectangles are stiffer

@@ -12,11 +12,11 @@
  *
  * These rules hold for every function in this file:
  *  - Determinism. Every stepper first computes omega2 = stiffness/mass, gamma = damping/mass and accel = load/mass,
- *    each rounded once, and then uses only these. A feature that is zero costs nothing and changes no bit. There is no
+ *    each rounded once, and then uses only these. Damping or load of zero costs nothing and changes no bit. There is no
  *    fused multiply-add, no reordering and no C library function that is not exact. Results are therefore bit-identical
  *    with every compiler, C library and processor that follow IEEE 754. Options that do not follow it, such as
- *    -ffast-math, are rejected at compile time where they can be detected. spring_self_test() detects the others.
- *    Floating-point exceptions must not be trapped, as after feenableexcept(): some operations whose results are not used
+ *    -ffast-math, are rejected at compile time where they can be detected. spring_self_test() detects the others. Do
+ *    not enable traps of floating-point exceptions (feenableexcept()): some operations whose results are not used
  *    divide by zero or overflow.
  *  - All or nothing. spring_advance() either succeeds, or leaves the state unchanged and returns the reason.
  *  - dt may be negative. It is never clamped, and never rejected for being unstable. spring_stable_step() returns the
@@ -42,7 +42,7 @@ extern "C" {
 
 /** The state of a spring: two numbers, which are easy to copy, to send over a network and to roll back. */
 typedef struct spring_state {
-    double x; /**< [m]   displacement from the unloaded rest position; the value itself with spring_follow() */
+    double x; /**< [m]   displacement from the unloaded rest position; with spring_follow(), the position itself */
     double v; /**< [m/s] velocity, at the same time as x */
 } spring_state;
 
@@ -117,8 +117,8 @@ typedef enum spring_status {
  *
  *     x1 = x + dt v;   v1 = v + dt (accel - omega2 x - gamma v)
  *
- * First order. Each step multiplies the energy of an undamped spring by 1 + omega2 dt^2, so the method is never stable
- * without damping. With damping it is stable below spring_stable_step().
+ * First order. Each step multiplies the energy of an undamped spring by 1 + omega2 dt^2, so with stiffness and without
+ * damping the method is never stable. With damping it is stable below spring_stable_step().
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
@@ -135,9 +135,9 @@ SPRING_API void spring_step_euler(spring_state *s, const spring_params *p, doubl
  *     v1 = (v + dt (accel - omega2 x)) / (1 + gamma dt);   x1 = x + dt v1
  *
  * First order. Many game engines use this method. Without damping it is symplectic: the energy error stays bounded, at
- * about dt omega/2 of the energy. It is then leapfrog with an offset of half a step: x and v + dt/2 (accel - omega2 x)
- * are a leapfrog run. Stable for 0 < dt < (gamma + sqrt(gamma^2 + 4 omega2))/omega2. For negative dt the implicit kick
- * has a pole at gamma |dt| = 1.
+ * about dt omega/2 of the energy. Without damping, it is leapfrog with v half a step behind: x and v + dt/2 (accel -
+ * omega2 x) are a leapfrog run. Stable for 0 < dt < (gamma + sqrt(gamma^2 + 4 omega2))/omega2. For negative dt the
+ * implicit kick has a pole at gamma |dt| = 1.
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
@@ -155,9 +155,9 @@ SPRING_API void spring_step_symplectic_euler(spring_state *s, const spring_param
  *     v1 = (v' + dt/2 (accel - omega2 x1)) / (1 + gamma dt/2)
  *
  * Second order, even with the implicit damping of the last kick. Time-reversible and symplectic without damping. Stable
- * for 0 < dt omega < 2 at every damping. For gamma dt > 2 it is stable, but a component of the velocity changes sign at
- * every step and decays slowly; use spring_step_exact() there. For negative dt the implicit kick has a pole at
- * gamma |dt| = 2.
+ * for 0 < dt omega < 2 at every damping. With gamma dt > 2 it is still stable below this limit, but a component of the
+ * velocity changes sign at every step and decays slowly; use spring_step_exact() there. For negative dt the implicit
+ * kick has a pole at gamma |dt| = 2.
  *
  * @param[in,out] s   state, x and v at the same time
  * @param[in]     p   parameters; not checked, see spring_advance()
@@ -194,10 +194,10 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  * @param[in]     dt  time step t [s] of any size, if omega t and gamma t do not overflow; a negative step integrates
  *                    backwards
  * @par Accuracy  Without load, the error of (x, v/omega) is at most
- *                    4 eps (1 + omega t max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
+ *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
  *                where zeta is the damping ratio, Phi is the propagator of (x, v/omega), and all norms are Euclidean.
- *                The bound holds at critical damping too. A load adds a term to x. The error of this term is at most
- *                8 eps (1 + omega t) times the term, or times accel/omega2 for an oscillating spring
+ *                The bound also holds at critical damping. A load adds a term to x. The error of this term is at most
+ *                8 eps (1 + omega |dt|) times the term, or times accel/omega2 for an oscillating spring
  *                (tests/spring/test_exact.c).
  * @par Source    src/spring/exact_formula_tmpl.h derives the formula
  * @par Threads   re-entrant; allocates nothing and keeps no state
@@ -244,11 +244,11 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *     hypot(x - rest position, (v - T')/omega) max(min(1, slow dt), 2^-16) <= 9/8 ulp + DBL_MIN
  *
  * where slow is the decay rate [1/s] of the slowest mode, and ulp is the larger of the ulp of x and the ulp of the rest
- * position. A spring is therefore placed from at most 73 728 ulps away, and the result is a continuous function of dt
- * to within this distance, less than 1.7e-11 of the larger of |x| and |rest position|. If slow dt < 2^-16, rounding
- * error may stop the spring before this, up to 1.2/(slow dt) ulps from its rest position. This concerns half-lives above
- * 757 s at 60 Hz, 189 s at 240 Hz and 0.94 s at 48 kHz. Without stiffness, damping brings the velocity to T', and the
- * position of the target has no effect.
+ * position. A spring is therefore placed only from at most 73 728 ulps away. As dt varies, the result jumps by at most
+ * this distance, which is less than 1.7e-11 of the larger of |x| and |rest position|. If slow dt < 2^-16, rounding
+ * error may stop the spring before it is placed, up to 1.2/(slow dt) ulps from its rest position. This concerns
+ * half-lives above 757 s at 60 Hz, 189 s at 240 Hz and 0.94 s at 48 kHz. Without stiffness, damping brings the velocity
+ * to T' + load/damping, and the position of the target has no effect.
  *
  * @param[in,out] s                state; unchanged unless SPRING_OK is returned
  * @param[in]     p                parameters
@@ -284,9 +284,9 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
  * Returns the stability limit of a method: for 0 < dt < limit, no solution of the unloaded spring grows. (Without
  * stiffness, its velocity does not grow.)
  *
- * @return limit [s], accurate to 8 ulp. 0: never stable (Euler without damping). INFINITY: always stable (the exact
- *         solution; a spring without stiffness and damping; leapfrog and symplectic Euler without stiffness). NaN for
- *         invalid parameters, an unknown method and a method that is not offered for one spring.
+ * @return limit [s], accurate to 8 ulp. 0: never stable (Euler with stiffness and without damping). INFINITY: always
+ *         stable (the exact solution; a spring without stiffness and damping; leapfrog and symplectic Euler without
+ *         stiffness). NaN for invalid parameters, an unknown method and a method that is not offered for one spring.
  * @par Source    the header of each method, such as src/methods/rk4_tmpl.h, derives its limit
  */
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
@@ -294,7 +294,7 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
 /**
  * Returns a time step that keeps the error of a method within a tolerance, for every initial state.
  *
- * The error of n steps, relative to the size |(x, v/Omega)| of the start and for the worst start, is
+ * For the worst start of the size |(x, v/Omega)| = 1, the error of n steps is
  *
  *     E = the largest |(x, v/Omega) - exact| after any i <= n steps,   Omega = max(omega, 1/duration)
  *
@@ -304,13 +304,13 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  * along its fast mode, so this mode determines the step; a start at rest would allow longer steps.
  *
  * @param[in] duration   > 0 [s]
- * @param[in] tolerance  > 0, relative to the start; above 1, shorter steps may have an error of up to 1.01 times the
- *                       tolerance
+ * @param[in] tolerance  > 0, relative to the start; if it is above 1, steps shorter than the result may have an error
+ *                       of up to 1.01 times the tolerance
  * @return time step [s]. 0: there is none, because the rounding error of n steps, sqrt(n) eps, exceeds the tolerance,
  *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered
  *         for one spring.
- * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and above 0.9 times for 100 steps or more
- *                (tests/spring/test_accurate_step.c)
+ * @par Accuracy  the error of a run from the worst start is at most 1.001 times the tolerance and, with 100 steps or
+ *                more, above 0.9 times the tolerance (tests/spring/test_accurate_step.c)
  * @par Source    src/spring/accuracy.c derives the error
  */
 SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance);
