@@ -581,7 +581,7 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * counts as several bodies only where it returns several contacts. Links do not collide, so a thin collider can pass
  * between two particles. A step with negative dt does not undo a step.
  *
- * The path of a particle near a custom body is searched in steps of the gap, at least half of `thickness`, so no
+ * The path of a particle near a custom body is searched in steps of the gap, at least 0.4 of `thickness`, so no
  * particle passes through it. The function is called a few times for a particle that rests, and at most 1500 times per
  * step. If more calls would be needed, the particle stops at the last point that is known to be outside. A gap or a
  * normal that is not finite makes the step fail with SPRING_ENONFINITE, or SPRING_EUNSTABLE in a scene with max_speed.

@@ -681,10 +681,11 @@ typedef struct meeting {
 
 enum { NO_CONTACT = 0, CONTACT = 1, CLEAR = 2 }; /* CLEAR: the path is known to end outside */
 
-/* [m] The step by which a path may enter a custom body: half of its thickness, so that it cannot pass the middle. */
+/* [m] The step by which a path may enter a custom body: less than half of its thickness, so that it does not reach the
+   middle, where the normal changes sides. */
 SPRING_INLINE double custom_step(const contact_body *b)
 {
-    return b->thickness / 2;
+    return 0.4 * b->thickness;
 }
 
 SPRING_INLINE vector3 end_in_frame(const contact_body *b, const contact_particle *p)

@@ -961,6 +961,16 @@ static void values_of_particles(void)
     free(s);
 }
 
+/* Solid between the radii 1 and 1 + *user. */
+static uint32_t shell(void *user, const double p[3], double gap[3], double normal[3][3])
+{
+    const double half = *(const double *)user / 2, r = length(p);
+    gap[0] = fabs(r - 1 - half) - half;
+    for (int a = 0; a < 3; a++)
+        normal[0][a] = (r > 1 + half ? 1 : -1) * p[a] / r;
+    return 1;
+}
+
 /* ------------------------------------------------------------------------------------------------------ custom bodies */
 
 static uint32_t hollow_sphere(void *user, const double y[3], double gap[3], double normal[3][3])
@@ -1097,7 +1107,7 @@ static int shots(spring_collider c, double radius, double speed, bool field, dou
         double now[3], gap[3], normal[3][3];
         spring_scene_get(s, SPRING_POSITION, now, 0, i, 1);
         hills(c.user, now, gap, normal);
-        out += field ? gap[0] < -1e-5 : !(length(now) < 1);
+        out += field ? gap[0] < -1e-5 : !(length(now) < 1 + 1e-5);
     }
     free(s);
     return out;
@@ -1106,7 +1116,7 @@ static int shots(spring_collider c, double radius, double speed, bool field, dou
 static void custom_bodies(void)
 {
     static mesh fine, coarse;
-    double radius = 1, height = 0.15;
+    double radius = 1, height = 0.15, wall = 0.2;
     ball_of_triangles(&fine, 2);
     ball_of_triangles(&coarse, 0);
     int out = 0, all = 0;
@@ -1125,7 +1135,11 @@ static void custom_bodies(void)
         out += shots(c, 0.01, 20, false, gravity);
         c.user = &coarse, c.spin[1] = 0, c.radius = 0.005, c.thickness = 0.01;
         out += shots(c, 0.005, 500, false, gravity);
-        all += 7 * 50;
+        /* several diameters per step, so particles hit the wall again within a step and move straight into it */
+        c = (spring_collider){.shape = SPRING_CUSTOM, .gap = shell, .user = &wall, .thickness = wall};
+        c.restitution = bounces, c.friction = 0.3;
+        out += shots(c, 0, 3000, false, 0);
+        all += 8 * 50;
     }
     printf("# %d of %d particles left\n", out, all);
     CHECK(out == 0, "none passes through");
