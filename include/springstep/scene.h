@@ -428,20 +428,23 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *  - up to 0.9 if all links have a damping ratio, damping/sqrt(2 stiffness mass), of at least 0.02, and none becomes
  *    longer than twice its rest length, otherwise up to 0.5;
  *  - with drag/mass of at least 0.1/s, up to 0.9 for soft bodies and sheets with shear springs while no link is longer
- *    than twice its rest length, and up to 0.5 for ropes and other nets;
+ *    than twice its rest length, and up to 0.5 for ropes and other nets (0.25 if links become longer than twice their
+ *    rest length);
  *  - half of these if there are tension-only links other than tethers;
- *  - without damping, 0.5 for smooth motion, 0.25 for violent motion (0.06 for more than a minute if links stretch by
- *    more than a quarter), and 0.1 for tension-only links in runs of up to a minute.
+ *  - without damping, 0.5 for smooth motion, 0.25 for violent motion (0.06 if links become longer than twice their rest
+ *    length, or stretch by more than a quarter in a run of more than a minute), and 0.1 for tension-only links in runs
+ *    of up to a minute.
  * `spring-work --problem steps` measures what longer steps cost. Use at most 0.7 of the bound where steady rotation
  * stretches links by more than a tenth (tests/scene/test_motion.c). The forces of a callback are not considered;
  * docs/games.md has a bound with them.
  *
  * At rest without link damping, the stability limit may be larger than the bound. With leapfrog, symplectic Euler and
- * SRKN6, it is 1.2 to 1.35 times the bound for a height field with structural, shear and bend springs, 1.35 to 1.7
- * times for such a cloth, and about 2 times for such a soft body of at least three particles along each edge (two: 1.3
- * to 1.6); with RK4 and RKN8 it is larger. It is closer to the bound with fewer springs or under tension: the ratio is
- * 1 for a rope and for a height field of structural springs only, and 1.4 for a cloth that is stretched by half. With
- * heavy damping, the limit may be several times the bound, but not for leapfrog with drag alone.
+ * SRKN6, it is 1.2 to 1.35 times the bound for a height field with structural, shear and bend springs and at least four
+ * particles along each edge, 1.35 to 1.75 times for such a cloth (narrower ones 1 to 1.25 times), and about 2 times for
+ * such a soft body of at least three particles along each edge (fewer: 1.3 to 1.9); with RK4 and RKN8 it is larger. It
+ * is closer to the bound with fewer springs or under tension: the ratio is 1 for a rope and for a height field of
+ * structural springs only, and 1.4 for a cloth that is stretched by half. With heavy damping, the limit may be several
+ * times the bound, but not for leapfrog with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this

@@ -766,6 +766,59 @@ static void coupled_columns(void)
     }
 }
 
+/* A plane of `layers` times the mass of the particles that it rests on, on a damped block, in calls of twice the stable
+   step. Returns its largest speed in the last of four parts of 20 s, relative to the first. */
+static double block_speed_ratio(double layers)
+{
+    enum { side = 3, count = side * side * side };
+    const spring_grid g = {.count = {side, side, side},
+                           .spacing = 0.1,
+                           .stiffness = 1000,
+                           .damping = 0.02 * sqrt(2 * 1000 * 0.05),
+                           .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+                           .pinned = SPRING_GRID_FIRST_Y};
+    double x[3 * count], largest[4] = {0}, before = 0;
+    uint8_t pinned[count];
+    spring_link link[9 * count];
+    size_t particles, links;
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && links <= 9 * count, "room for the links");
+    spring_grid_fill(&g, x, pinned, link);
+    const spring_scene_def def = {.particles = particles,
+                                  .links = links,
+                                  .position = x,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .mass_all = 0.05,
+                                  .gravity = {0, -gravity, 0},
+                                  .colliders = 1};
+    spring_scene *s = scene_of(&def);
+    const double T = 2 * spring_scene_stable_step(s, SPRING_LEAPFROG), M = layers * side * side * 0.05;
+    const int calls = (int)(20 / T);
+    spring_collider body = {
+        .shape = SPRING_PLANE, .axis = {{0, -1, 0}}, .at = {0, 0.1 * (side - 1), 0}, .friction = 0.5};
+    body.acceleration[1] = -gravity;
+    for (int i = 0; i < calls; i++) {
+        spring_impulse j;
+        set(s, &body, 1);
+        run(s, SPRING_LEAPFROG, T / 3, 3);
+        spring_scene_impulses(s, &j, 0, 1);
+        body.at[1] += T * body.velocity[1] + T * T * body.acceleration[1] / 2;
+        body.velocity[1] += j.linear[1] / M - gravity * T;
+        body.acceleration[1] = -gravity + (3 * j.linear[1] - (i > 0 ? before : j.linear[1])) / (2 * M * T);
+        before = j.linear[1];
+        largest[4 * i / calls] = fmax(largest[4 * i / calls], fabs(body.velocity[1]));
+    }
+    free(s);
+    return largest[3] / largest[0];
+}
+
+static void coupled_blocks(void)
+{
+    CHECK_BELOW(block_speed_ratio(6), 0.5, "comes to rest");
+    CHECK_BELOW(block_speed_ratio(20), 0.5, "comes to rest");
+    CHECK(block_speed_ratio(4) > 0.5, "vibrates on");
+}
+
 enum { most_rope = 12 };
 
 typedef struct attached_body {
@@ -1383,6 +1436,7 @@ static const test tests[] = {
     {"coupling", coupling},
     {"coupled oscillation", coupled_oscillation},
     {"coupled columns", coupled_columns},
+    {"coupled blocks", coupled_blocks},
     {"attached bodies", attached_bodies},
     {"a damped link at rest", damped_link_at_rest},
     {"radius, friction and mask", values_of_particles},
