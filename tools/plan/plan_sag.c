@@ -4,10 +4,10 @@
  *
  * Method    For each trial stiffness, leapfrog runs with drag until all forces balance, from the rest positions of the
  *           last trial. The drag is critical for a pendulum of the length of the scene. The stretch of the settled
- *           scene is close to a power of the stiffness (-1 for a rope, -2/3 for a net held taut at two corners), so the
- *           next trial follows from the secant through the logarithms of the last two. The height with unstretchable
- *           links is extrapolated from two stiff scenes: to first order, the difference from it is proportional to
- *           1/stiffness.
+ *           scene is close to a power of the stiffness, so the next trial follows from the secant through the logarithms
+ *           of the last two. The height with unstretchable links is extrapolated from two stiff scenes: to first order,
+ *           the difference from it is proportional to 1/stiffness. (It is not for a sheet without diagonals that hangs
+ *           by two corners, which presets and triangle meshes are not.)
  */
 #include <math.h>
 #include <stdlib.h>
