@@ -200,7 +200,7 @@ static void time_method(cli_table *table, preset_kind kind, spring_method m, uin
     static const double directions[] = {
         [PRESET_ROPE] = 1, [PRESET_CLOTH] = 2, [PRESET_JELLY] = 3, [PRESET_CHAIN] = 1, [PRESET_WATER] = 2};
     const double most_size = 1e6;
-    const int rounds = 4;
+    const int rounds = quick ? 2 : 4;
     preset_settings settings = preset_defaults(kind);
     const double spacing = settings.length / (double)settings.size;
     double frame = 1;

@@ -183,7 +183,7 @@ static double measure(cli_table *table, work *w, const work_solver *s, work_effo
 
 static double longest(const work *w)
 {
-    return w->problem->longest * (quick ? 0.1 : 1);
+    return w->problem->longest * (quick ? 0.04 : 1);
 }
 
 /* Returns true if the last row is of this external solver and has the smallest error of all external rows. */
