@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # A cape of 20 by 30 particles on a figure that runs and turns: processor time for 1/60 s versus the stretch of its
-# columns (99th percentile over a minute), with more and more steps from right to left. Vertical lines: the stretches of the
-# table. Leapfrog takes 0.9 of its stable step, or 0.5, and has links as stiff as that allows; "tethers" are those of
-# every seventh row, "all tethers" and "no tethers" are in float, too. XPBD has rigid links. XPBD* is a program for regular
-# sheets only.
+# columns (99th percentile over a minute), with more and more steps from right to left. Vertical lines: the stretches of
+# the table. Leapfrog has steps of 0.9 of its stable step (0.5 where noted), and links as stiff as these steps allow.
+# "tethers": tethers of every seventh row. "all tethers" and "no tethers" are in single precision. XPBD has rigid links.
+# XPBD* is XPBD with a loop for regular sheets only.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "560 + key_height(9)"
 cape = ARG3
 call plots."need.gp" cape "solver precision tethers fraction effort time_us column_stretch"

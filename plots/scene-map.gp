@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The result of each scene with each method versus the step, which is an integer fraction of a frame of 1/60 s. Bars:
-# the stable step that the library returns. A stable step that is too short for the axis is written at its left end. In
+# the stable step that the library returns. A stable step that is too short for the axis is written at the left end of the axis. In
 # these runs, every run that explodes lies to the right of its bar.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "120 + 5*32*(methods + 1)"
 map = ARG3

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # The error after ten periods versus step and damping ratio, as a fraction of the initial displacement. Orange: an error
 # larger than the initial displacement. White line: the stability limit. Near ζ = 1 the spring is at rest after ten
-# periods, so even long steps leave almost no error if they are stable. Leapfrog is stable at every damping ratio. With
-# strong damping and long steps it is inaccurate, because a part of its velocity changes sign in each step.
+# periods, so even long steps leave almost no error if they are stable. Leapfrog's limit is the same at every damping
+# ratio. With strong damping and long steps it is inaccurate, because the part of the motion that should decay fast
+# changes its sign in each step.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "200 + 250*((methods + 1)/2)"
 map = ARG3
 limits = ARG4
