@@ -3,8 +3,8 @@
 # columns (99th percentile over a minute), with more and more steps from right to left. Vertical lines: the stretches of
 # the table. Leapfrog has steps of 0.9 of its stable step (0.5 where noted), and links as stiff as these steps allow.
 # "tethers": tethers of every seventh row. "all tethers" and "no tethers" are in single precision. XPBD has rigid links.
-# XPBD* is XPBD with a loop for regular sheets only. Where a point lies far above its curve, a part of the cape was
-# caught between an arm and the body, where particles touch two capsules at once.
+# XPBD* is XPBD with a loop for regular sheets only. Where a point lies far above its curve, the cape clung to the
+# figure in that run, with many particles in contact.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "560 + key_height(9)"
 cape = ARG3
 call plots."need.gp" cape "solver precision tethers fraction effort time_us column_stretch"
