@@ -1014,13 +1014,13 @@ static void values_of_particles(void)
     free(s);
 }
 
-/* Solid between the radii 1 and 1 + *user. */
+/* Solid between the radii 0.9 and 0.9 + *user. */
 static uint32_t shell(void *user, const double p[3], double gap[3], double normal[3][3])
 {
-    const double half = *(const double *)user / 2, r = length(p);
-    gap[0] = fabs(r - 1 - half) - half;
+    const double half = *(const double *)user / 2, middle = 0.9 + half, r = length(p);
+    gap[0] = fabs(r - middle) - half;
     for (int a = 0; a < 3; a++)
-        normal[0][a] = (r > 1 + half ? 1 : -1) * p[a] / r;
+        normal[0][a] = (r > middle ? 1 : -1) * p[a] / r;
     return 1;
 }
 
@@ -1160,7 +1160,7 @@ static int shots(spring_collider c, double radius, double speed, bool field, dou
         double now[3], gap[3], normal[3][3];
         spring_scene_get(s, SPRING_POSITION, now, 0, i, 1);
         hills(c.user, now, gap, normal);
-        out += field ? gap[0] < -1e-5 : !(length(now) < 1 + 1e-5);
+        out += field ? gap[0] < -1e-5 : !(length(now) < 1);
     }
     free(s);
     return out;

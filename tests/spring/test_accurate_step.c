@@ -250,7 +250,7 @@ static void units(void)
 /* Numbers at the ends of what there is: an answer, and no endless search. */
 static void extreme_numbers(void)
 {
-    static const double ends[] = {0, 5e-324, 1e-150, 0.9, 1e150, 1.7e308};
+    static const double ends[] = {0, 5e-324, 1e-150, 1e-8, 0.9, 1e150, 1.7e308};
     enum { ENDS = sizeof ends / sizeof ends[0] };
     for (int k = 0; k < ENDS; k++)
         for (int c = 0; c < ENDS; c++)
