@@ -74,8 +74,8 @@ extern "C" {
  * If rest is 0, the link is linear, and damped in all directions: the force on a is
  * stiffness (x_b - x_a) + damping (v_b - v_a).
  *
- * With one axis, the link is also linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
- * force on b is its opposite. */
+ * With one axis, the link is also linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and
+ * the force on b is its opposite. */
 typedef struct spring_link {
     uint32_t a;       /**<         index of a particle */
     uint32_t b;       /**<         index of another particle */
@@ -651,8 +651,8 @@ typedef struct spring_impulse {
  * spring_scene_advance().
  *
  * They are 0 after a call without steps, spring_scene_init() and spring_scene_set_colliders(). A failed call keeps them.
- * The angular impulse of a capsule or a custom body is about its `at` as well. Impulses are not part of the state: no step
- * reads them. Sums of several calls differ from those of one call in rounding errors.
+ * The angular impulse of a capsule or a custom body is about its `at` as well. Impulses are not part of the state: no
+ * step reads them. Sums of several calls differ from those of one call in rounding errors.
  *
  * @param[out] out  [count]
  * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the scene does not have these colliders now; SPRING_EDISABLED:
