@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Error at the end of a run with contacts versus step, for the library and for two schemes that are common in engines,
-# all with leapfrog. Top: a particle bounces along the ground with friction. Bottom: a particle slides down a sphere
-# with friction. The dotted lines have the slopes of orders one and two. The errors of bounces also depend on where
-# within a step an impact occurs.
+# all with leapfrog. Top: a particle bounces along the ground with friction (case oblique of spring-contacts). Bottom: a
+# particle slides down a sphere with friction (case sphere). The dotted lines have the slopes of orders one and two. The
+# errors of bounces also depend on where within a step an impact occurs.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "760 + key_height(4)"
 contacts = ARG3
 call plots."need.gp" contacts "case scheme dt_s error"

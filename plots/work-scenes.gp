@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Work–precision diagrams of scenes, error at the end versus run time: an elastic pendulum, a falling cloth, and a sheet
-# of height-field water, which is linear. Open markers: GSL (grey), SUNDIALS (ARKODE and CVODE, brown) and Boost.odeint
-# (violet). The symplectic method of Boost.odeint applies only without drag.
+# Work–precision diagrams of scenes, error at the end versus run time (spring-work, problems elastic-pendulum, cloth and
+# water): an elastic pendulum, a falling cloth, and a sheet of height-field water, which is linear. Open markers: GSL
+# (grey), SUNDIALS (ARKODE and CVODE, brown) and Boost.odeint (violet). The symplectic method of Boost.odeint applies
+# only without drag.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1115 + key_height(methods + 7)"
 output = ARG1
 work = ARG3
