@@ -528,7 +528,7 @@ static void add(const char *name, const scene_subject *s)
         .goal_speedup = looped ? goal_speedup(s) : 0,
         .limits = {besides[s->against], s->against == LIMITS ? "arithmetic" : NULL},
         .baseline = looped ? "list" : NULL,
-        .long_only = links > 2000000,
+        .long_only = links > (s->shape == SHEET && s->order == NATURAL ? 2000000 : 500000),
         .time = time,
     };
     if (s->against == DEFINITION)

@@ -124,7 +124,7 @@ void steps_write(cli_table *table, bool quick)
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < sizeof fractions / sizeof fractions[0]; k++) {
             steps_motion m = motions[i];
-            m.duration = quick ? fmin(m.duration, 60) : m.duration;
+            m.duration = quick ? fmin(m.duration, 30) : m.duration;
             cli_row(table, "steps\t%s\t%.3g\t%g\t%.3g\t%.3g", m.name, m.drag_rate, m.duration, fractions[k],
                     gain_of(&m, fractions[k]));
             cli_progress((double)(7 * i + k + 1) / (7.0 * (double)count));
