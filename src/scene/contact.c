@@ -12,7 +12,8 @@
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
  * Drift     For each contact, in the order of the times of impact:
- *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
+ *           1. A particle that is inside at the start is moved out along n, without a change of velocity. If it is
+ *              inside several colliders, this holds for the first, and for others if it is still inside then.
  *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
  *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
  *           3. Impact, if n.u < 0, with u = v0 + theta h a - V, or u = w - V at a second contact: the impulse is
@@ -24,6 +25,7 @@
  *              loses its component into the collider.
  *           5. After a contact, the other colliders are tested with the changed path. A particle that is still inside at
  *              the end (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
+ *              A large D is made shorter, and the next pass continues from there: see most_depths.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
  *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
@@ -62,6 +64,11 @@ enum {
     seidel_rounds = 32,    /* where no particle can fit, as between plates that close */
     slide_parts = 4        /* of a step in which friction turns */
 };
+
+/* A pass of item 5 moves a particle by at most the length of its path and this number of depths. The tangent planes of
+   surfaces that close almost face to face meet far away, but the surfaces themselves may be apart much earlier. The path
+   becomes longer with each pass, so that passes reach the corner of two planes at an angle of 0.5 degrees. */
+static const double most_depths = 16;
 
 /* Fractions of a step up to this size are rounding errors. */
 static const double least_fraction = 1e-13;
@@ -782,6 +789,9 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->fraction = 0;
     find_nearest(p, b, 0, m->start, &m->at);
     m->start_depth = m->at.gap < -m->slop ? -m->at.gap : 0;
+    near_point there;
+    if (m->again && m->start_depth > 0 && gap_at_end(p, b, &there) >= -m->slop)
+        return false;                             /* an earlier contact of this step has moved it out */
     m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
     const bool custom = is_custom(b->shape), enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
     if (custom && m->start_depth == 0 && !enters ? !find_custom_impact(p, m) : !custom && !find_convex_impact(p, m))
@@ -828,7 +838,7 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
     const vector3 end = end_in_frame(b, p);
     const double inward = m->start_depth > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->start_depth
                                              : m->gap + inner(m->at.normal, subtract(end, m->place));
-    if (inward < 0)
+    if (inward < 0 && !(m->again && m->start_depth > 0))
         p->d = add_scaled(p->d, -inward, m->n_end);
     near_point there;
     const double gap = gap_at_end(p, b, &there);
@@ -951,7 +961,7 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
         p->d = add_scaled(p->d, m->time_left, change);
         start = add(start, change);
     }
-    if (m->start_depth > 0)
+    if (m->start_depth > 0 && !m->again)
         p->d = add_scaled(p->d, m->start_depth, m->n);
     if (!(fabs(m->time_left) > 0))
         return CONTACT;
@@ -1228,7 +1238,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
     uint32_t inside = 0;
     for (int pass = 0; pass < corner_passes && (pass > 0 || (nearby & ~clear) != 0); pass++) {
         unsigned count = 0;
-        bool any_inside = false;
+        double deepest = 0;
         const vector3 x = add(p->x0, p->d);
         const double way = length3(p->d);
         for (unsigned i = 0; i < s->count; i++) {
@@ -1238,17 +1248,19 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
                 const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
-                any_inside = any_inside || deep;
+                deepest = deep ? fmax(deepest, c[k].least) : deepest;
                 inside |= (uint32_t)deep << i;
                 if ((inside >> i & 1) != 0 || ((p->touched >> i & 1) != 0 && -c[k].least < way))
                     c[count++] = c[k];
             }
         }
-        if (!any_inside)
+        if (!(deepest > 0))
             break;
-        p->d = add(p->d, least_change(c, count));
+        const vector3 change = least_change(c, count);
+        const double share = fmin(1, (way + most_depths * deepest) / length3(change)); /* may be of 0 by 0 */
+        p->d = add_scaled(p->d, share, change);
         for (unsigned i = 0; i < count; i++) {
-            const vector3 x1 = add_scaled(x, c[i].multiplier, c[i].n);
+            const vector3 x1 = add_scaled(x, share * c[i].multiplier, c[i].n);
             spring_contact_record(s, p, c[i].index, &x, &p->w, &x1, &p->w);
         }
         nearby |= near_path(s, p);
