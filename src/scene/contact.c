@@ -25,7 +25,9 @@
  *              loses its component into the collider.
  *           5. After a contact, the other colliders are tested with the changed path. A particle that is still inside at
  *              the end (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
- *              A large D is made shorter, and the next pass continues from there: see most_depths.
+ *              A pass moves it by at most the length of its path and the largest depth, because the tangent planes of
+ *              surfaces that are almost face to face meet far away. Each pass lengthens the path, so the next can move
+ *              it farther.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
  *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
@@ -64,11 +66,6 @@ enum {
     seidel_rounds = 32,    /* where no particle can fit, as between plates that close */
     slide_parts = 4        /* of a step in which friction turns */
 };
-
-/* A pass of item 5 moves a particle by at most the length of its path and this number of depths. The tangent planes of
-   surfaces that close almost face to face meet far away, but the surfaces themselves may be apart much earlier. The path
-   becomes longer with each pass, so that passes reach the corner of two planes at an angle of 0.5 degrees. */
-static const double most_depths = 16;
 
 /* Fractions of a step up to this size are rounding errors. */
 static const double least_fraction = 1e-13;
@@ -1257,7 +1254,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
         if (!(deepest > 0))
             break;
         const vector3 change = least_change(c, count);
-        const double share = fmin(1, (way + most_depths * deepest) / length3(change)); /* may be of 0 by 0 */
+        const double share = fmin(1, (way + deepest) / length3(change)); /* 1 if the change is 0 */
         p->d = add_scaled(p->d, share, change);
         for (unsigned i = 0; i < count; i++) {
             const vector3 x1 = add_scaled(x, share * c[i].multiplier, c[i].n);

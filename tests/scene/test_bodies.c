@@ -415,6 +415,150 @@ static void wide_grooves(void)
     CHECK_BELOW(fastest, 2, "speed in a wide groove, in units of g dt: spring_scene_set_colliders()");
 }
 
+/* [m] The distance from the surface of a body. */
+static double gap_of(const spring_collider *c, const double x[3])
+{
+    double arm[3], segment[3] = {0}, far = 0, largest = -INFINITY;
+    for (int a = 0; a < 3; a++)
+        arm[a] = x[a] - c->at[a];
+    if (c->shape == SPRING_PLANE)
+        return dot(arm, c->axis[0]);
+    if (c->shape == SPRING_BOX) {
+        for (int i = 0; i < 3; i++) {
+            const double over = fabs(dot(arm, c->axis[i])) - c->half[i];
+            largest = fmax(largest, over);
+            far = hypot(far, fmax(over, 0));
+        }
+        return (largest > 0 ? far : largest) - c->radius;
+    }
+    for (int a = 0; a < 3 && c->shape == SPRING_CAPSULE; a++)
+        segment[a] = c->to[a] - c->at[a];
+    const double share = fmin(1, fmax(0, dot(arm, segment) / fmax(dot(segment, segment), 1e-300)));
+    for (int a = 0; a < 3; a++)
+        far = hypot(far, arm[a] - share * segment[a]);
+    return far - c->radius;
+}
+
+/* A particle starts inside several bodies that overlap, as a cape at the joints of a figure. It is moved out of all of them,
+   to the surface of their union if there are two. */
+static void inside_several(void)
+{
+    const size_t cases = random_cases(4000);
+    double inside = 0, outside[2] = {0}; /* of two and of more bodies */
+    size_t tried = 0;
+    for (size_t i = 0; i < cases; i++) {
+        spring_collider c[4];
+        const uint32_t count = 2 + (uint32_t)(random_bits() % 3);
+        for (uint32_t k = 0; k < count; k++) {
+            spring_collider body = random_collider(3);
+            if (body.shape == SPRING_CUSTOM || (body.shape == SPRING_PLANE && k > 0)) /* two planes may meet far away */
+                body.shape = SPRING_CAPSULE;
+            c[k] = (spring_collider){.shape = body.shape, .radius = body.radius, .friction = body.friction};
+            memcpy(c[k].at, body.at, sizeof body.at);
+            memcpy(c[k].to, body.to, sizeof body.to);
+            memcpy(c[k].axis, body.axis, sizeof body.axis);
+            memcpy(c[k].half, body.half, sizeof body.half);
+            if (k > 0 && random_bits() % 4 == 0)
+                c[k] = c[0];
+        }
+        double x[3], now[3], v[3], deep[2] = {0}, least = INFINITY;
+        const double none[3] = {0};
+        for (int a = 0; a < 3; a++)
+            x[a] = random_uniform(-0.5, 0.5);
+        for (uint32_t k = 0; k < count; k++) {
+            const double depth = -gap_of(&c[k], x);
+            deep[1] = fmax(deep[1], fmin(depth, deep[0]));
+            deep[0] = fmax(deep[0], depth);
+        }
+        if (!(deep[1] > 0))
+            continue;
+        tried++;
+        spring_scene *s = particle_at(x, none, none, 4);
+        set(s, c, count);
+        run(s, with_contacts[i % 2], frame, 1);
+        get(s, now, v);
+        for (uint32_t k = 0; k < count; k++)
+            least = fmin(least, gap_of(&c[k], now));
+        inside = fmax(inside, -least);
+        outside[count > 2] = fmax(outside[count > 2], least / deep[0]);
+        free(s);
+    }
+    CHECK(tried > cases / 8, "particles inside two bodies");
+    CHECK_BELOW(inside, 8 * 5 * EPS, "inside a body: 8 eps (|x| + |at| + size)");
+    CHECK_BELOW(outside[0], 0.01, "distance from both bodies, in units of the depth before");
+    CHECK_BELOW(outside[1], 1, "distance from all bodies: passes of item 5 move it by up to the depth");
+}
+
+/* A ball comes down on a particle on the floor and stops where the particle does not fit between them. In no step is the
+   particle moved farther than by a third beyond the nearest place where it fits. */
+static void between_closing_bodies(void)
+{
+    static const double offsets[] = {0, 1e-6, 1e-4, 2e-3, 0.03};
+    const double radius = 0.25, r = 0.01, end_gap = 0.005, g[3] = {0, -gravity, 0}, none[3] = {0};
+    const double fits = sqrt(pow(radius + r, 2) - pow(radius + end_gap - r, 2)); /* [m] from the axis */
+    double farthest = 0;
+    for (int i = 0; i < 5; i++)
+        for (int k = 0; k < 6; k++) {
+            const double speed = (const double[]){0.5, 2, 5}[k / 2], dt = k % 2 ? 1. / 960 : 1. / 240;
+            const double x[3] = {offsets[i], r, 0};
+            spring_scene_def def = {.particles = 1,
+                                    .position = x,
+                                    .velocity = none,
+                                    .mass_all = 0.01,
+                                    .colliders = 2,
+                                    .particle_radius = r};
+            memcpy(def.gravity, g, sizeof g);
+            const spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.5},
+                                          {.shape = SPRING_SPHERE,
+                                           .radius = radius,
+                                           .friction = 0.3,
+                                           .at = {0, radius + end_gap + 0.05, 0},
+                                           .velocity = {0, -speed, 0}}};
+            spring_scene *s = scene_of(&def);
+            set(s, c, 2);
+            double before[3], now[3], v[3];
+            for (int n = 0; n < (int)(0.05 / speed / dt); n++) {
+                get(s, before, v);
+                run(s, SPRING_LEAPFROG, dt, 1);
+                get(s, now, v);
+                if (hypot(before[0], before[2]) < fits)
+                    farthest = fmax(farthest, hypot(now[0], now[2]) - length(v) * dt);
+            }
+            free(s);
+        }
+    CHECK_BELOW(farthest / fits, 4. / 3, "distance from the axis after a step, in units of that of the nearest place");
+}
+
+/* Two planes that enclose a small angle close in on a particle between them, which they push out. */
+static void closing_grooves(void)
+{
+    static const double degrees[] = {60, 20, 4, 2, 0.5};
+    double inside = 0;
+    for (int i = 0; i < 5; i++)
+        for (int m = 0; m < method_count; m++) {
+            const double half = degrees[i] * PI / 360, x[3] = {0, 1, 0}, g[3] = {0, -gravity, 0}, none[3] = {0};
+            const double speed = 0.02; /* [m/s] of the corner, upwards */
+            spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}},
+                                    {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}}};
+            for (int k = 0; k < 2; k++) { /* each closes along its normal */
+                const double toward = speed * sin(half);
+                for (int a = 0; a < 3; a++)
+                    c[k].velocity[a] = toward * c[k].axis[0][a];
+            }
+            spring_scene *s = particle_at(x, none, g, 2);
+            set(s, c, 2);
+            double now[3], v[3];
+            for (int k = 1; k <= 480 * 3; k++) {
+                run(s, with_contacts[m], 1. / 480, 1);
+                get(s, now, v);
+                for (int j = 0; j < 2; j++)
+                    inside = fmax(inside, k / 480. * speed * sin(half) - dot(now, c[j].axis[0]));
+            }
+            free(s);
+        }
+    CHECK_BELOW(inside, in_double ? 1e-14 : 1e-6, "inside");
+}
+
 /* -------------------------------------------------------------------------------------------------------- tunnelling */
 
 /* A plate 2 b thick flies through a cloud at up to 500 m/s and turns by up to 0.2 rad in a step. */
@@ -1452,6 +1596,9 @@ static const test tests[] = {
     {"friction across reversals", friction_across_reversals},
     {"grooves", grooves},
     {"wide grooves", wide_grooves},
+    {"closing grooves", closing_grooves},
+    {"inside several", inside_several},
+    {"between closing bodies", between_closing_bodies},
 };
 
 int main(void)
