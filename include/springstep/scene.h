@@ -204,7 +204,8 @@ typedef struct spring_collider {
     double axis[3][3];      /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes.
                                 Errors of up to 1e-3 in their dot products, as of rotations in single precision, are
                                 removed */
-    double half[3];         /**< [m] >= 0; box: half of its size along each of its axes, without the radius */
+    double half[3];         /**< [m] >= 0; box: half of its size along each of its axes, without the radius. A box
+                                without thickness does not stop particles unless it or they have a radius */
     double radius;          /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
     double velocity[3];     /**< [m/s] velocity of `at` */
     double velocity_to[3];  /**< [m/s] capsule: velocity of `to` */
@@ -557,8 +558,9 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * The colliders are given at their pose at the current time of the scene. They then move with their velocity,
  * acceleration, spin and spin acceleration until they are set again. After an error, the colliders of the last call
  * keep moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that
- * is inside a collider is moved to its surface in the next step. The move adds no velocity, but a velocity into the
- * body is then treated as an impact. Pinned particles pass through colliders.
+ * is inside a collider is moved to its surface in the next step, and out of all of them if it is inside several. The
+ * move adds no velocity, but a velocity into the body is then treated as an impact. Pinned particles pass through
+ * colliders.
  *
  * To set colliders once per frame of length T, give the present pose, the present velocity V of the body, and the
  * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and
