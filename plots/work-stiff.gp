@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # {{ method }}: error at the end versus computing time per frame of 1/60 s. Leapfrog's curve begins with the fewest
-# steps for which the run stays finite, even if they are longer than the stable step of the library. Dotted line: leapfrog with links softened until the step is stable. XPBD has one iteration per substep. BDF2-CG is
+# steps, at least one per frame, for which the run stays finite, even if they are longer than the stable step of the
+# library. Dotted line: leapfrog with links softened until the step is stable. XPBD has one iteration per substep. BDF2-CG is
 # BDF of order 2 with conjugate gradients{{ ' and starts with one step per frame. Projective dynamics has one iteration per step' if method != 'Damped cloth' else ', from one step per frame' }}. CVODE's
 # BDF, of order 2 or of up to 5, chooses its own steps.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "symplectic-euler leapfrog rk4 srkn6 rkn8" "460 + key_height(methods + 6)"

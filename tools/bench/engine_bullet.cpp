@@ -2,7 +2,7 @@
 // A sheet as a soft body of Bullet, in its own world without collisions. Bullet's links have no stiffness in N/m. The
 // position solver moves both ends of each link to its length, in one iteration per step, which is the work of one force
 // per link. The links are in random order, as in Bullet's own examples. In grid order, each link depends on the result
-// of the previous one, which takes half as long again, and stiff sheets explode.
+// of the previous one, which takes longer, and stiff sheets explode.
 #include "engine.h"
 
 #include <btBulletDynamicsCommon.h>

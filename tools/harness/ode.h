@@ -89,6 +89,6 @@ double ode_sundials_slowness(double (*clock)(void));
 
 /* At this ratio or above, SUNDIALS is taken to be compiled without optimisation. Measured with gcc 12: 1.0 with -O3,
    about 3 with -O2, which does not vectorise this loop, and 5.3 to 7.6 with -O0. */
-#define ODE_UNOPTIMISED 4
+#define ODE_UNOPTIMISED 2.5
 
 #endif

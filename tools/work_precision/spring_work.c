@@ -211,7 +211,7 @@ static void sweep_steps(cli_table *table, work *w, const work_solver *s)
     const bool study = w->problem->kind == WORK_STUDY; /* the report needs its finest step */
     const double finest = quick && !study ? fmax(w->finest, w->duration / 2e6) : w->finest;
     const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* infinite for a scene */
-    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED || s->side == WORK_IMPLICIT;
+    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED || s->side == WORK_IMPLICIT || w->damped;
     double n = ceil(any_step ? fmin(w->duration / w->coarsest, 60 * w->duration) : w->duration / w->coarsest),
            spent = 0;
     for (; n < most * 0.999 && goes_on(w, s, spent); n = ceil(n * factor))
