@@ -261,14 +261,17 @@ static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
     axis[2] = cross(axis[0], axis[1]);
 }
 
-/* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. */
+/* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. If it turns
+   far, the frame does not turn. */
 static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
 {
     const double before = length3(from), after = length3(to);
     b->start.segment = b->start.along = from;
     b->end.segment = b->end.along = to;
     const double cosine = inner(from, to) / (before * after);
-    if (is_zero(subtract(from, to)) || !(before > 0) || !(after > 0) || !(cosine > -0.5))
+    b->turns = !is_zero(subtract(from, to));
+    b->folds = b->turns && !(before > 0 && after > 0 && cosine > -0.5);
+    if (!b->turns || b->folds)
         return;
     const vector3 v = scale(1 / (before * after), cross(from, to));
     for (int i = 0; i < 3; i++) {
@@ -276,7 +279,6 @@ static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
         b->end.axis[i] = add_scaled(add(a, once), 1 / (1 + cosine), cross(v, once));
     }
     b->end.segment = scale(after / before, from);
-    b->turns = b->turns || !is_zero(v);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- bounds */
@@ -379,7 +381,7 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
         const vector3 to = subtract(path_of(c->to, c->velocity_to, c->acceleration, t1, flat), b->end.at);
         b->start.stretching = b->end.stretching = subtract(vector_of(c->velocity_to, flat), velocity);
         b->moves = b->moves || !is_zero(b->start.stretching);
-        turn_with_segment(b, from, to);
+        turn_with_segment(b, from, is_zero(b->start.stretching) ? from : to);
         if (b->turns)
             angle = 2 * length3(subtract(b->end.axis[0], b->start.axis[0])) +
                     2 * length3(subtract(b->end.axis[1], b->start.axis[1])) +
@@ -885,7 +887,9 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
     const vector3 x0 = add_scaled(p->x0, m->fraction, p->d), x1 = add(p->x0, p->d);
     vector3 slip = zero3; /* mean velocity of the surface in the frame */
     if (b->slips) {
-        slip = slip_velocity(b, &b->start, m->at.along, x0, m->n);
+        const vector3 growth = subtract(b->end.along, b->start.along);
+        const vector3 shift_of_core = add_scaled(subtract(b->end.at, b->start.at), m->at.along, growth);
+        slip = slip_velocity(b, &b->start, m->at.along, add_scaled(x0, -m->fraction, shift_of_core), m->n);
         if (b->turns && b->shape != SPRING_CAPSULE)
             slip = scale(0.5, add(slip, slip_velocity(b, &b->end, m->at.along, x0, m->n)));
         else if (b->shape != SPRING_PLANE)
@@ -1196,15 +1200,43 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
     spring_contact_record(s, p, c->index, &x, &before, &x, v);
 }
 
+/* Between surfaces that close almost face to face, no velocity may fit all constraints except a very large one. Then those
+   of surfaces that the particle has left in this step do not count. far: [m] gaps at x above which it has left */
+static unsigned without_distant(constraint *c, unsigned count, const double *gap, const double *far, double sign,
+                                vector3 v)
+{
+    double fastest = length3(v);
+    for (unsigned i = 0; i < count; i++) {
+        fastest += length3(c[i].velocity);
+        c[i].least = -sign * inner(subtract(v, c[i].velocity), c[i].n);
+    }
+    if (!(length3(least_change(c, count)) > 2 * fastest))
+        return count;
+    unsigned near = 0;
+    for (unsigned i = 0; i < count; i++)
+        if (!(gap[i] > far[i]))
+            c[near++] = c[i];
+    return near;
+}
+
 void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
                          vector3 *v)
 {
     constraint c[most_constraints];
+    double gap[most_constraints], far[most_constraints];
     unsigned count = 0;
-    for (unsigned i = 0; i < s->count; i++)
-        if ((touched >> i & 1) != 0)
-            count =
-                add_constraints(p, &s->body[i], i, at_end, x, gap_tolerance(s, p, &s->body[i], at_end, x), c, count);
+    for (unsigned i = 0; i < s->count; i++) {
+        if ((touched >> i & 1) == 0)
+            continue;
+        const double tolerance = gap_tolerance(s, p, &s->body[i], at_end, x);
+        unsigned k = count;
+        for (count = add_constraints(p, &s->body[i], i, at_end, x, tolerance, c, count); k < count; k++) {
+            gap[k] = -c[k].least;
+            far[k] = tolerance;
+        }
+    }
+    if (count > 1)
+        count = without_distant(c, count, gap, far, s->h < 0 ? -1 : 1, *v);
     stop(s, p, c, count, x, v);
 }
 
@@ -1283,7 +1315,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
             next->index = i;
             next->again = p->touched != 0;
             if (!meet(s, p, next))
-                clear |= bit;
+                clear |= s->body[i].folds ? 0 : bit;
             else if (first == NULL || next->fraction < first->fraction) {
                 first = next;
                 next = first == &each[0] ? &each[1] : &each[0];

@@ -43,7 +43,8 @@ typedef struct body_pose {
 typedef struct contact_body {
     spring_shape shape;
     bool moves;    /* its pose depends on time */
-    bool turns;    /* its frame turns in this step */
+    bool turns;    /* its frame turns, or its segment changes, in this step */
+    bool folds;    /* its segment has or passes the length 0, so the gap along a chord is not convex */
     bool slips;    /* its surface moves in the frame: the spin of a round body, or `surface` */
     bool flat;     /* two axes */
     uint32_t bits; /* of the masks of particles */

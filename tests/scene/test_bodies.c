@@ -559,6 +559,87 @@ static void closing_grooves(void)
     CHECK_BELOW(inside, in_double ? 1e-14 : 1e-6, "inside");
 }
 
+/* A capsule becomes longer or shorter along its own axis, from, to or through the length 0. It hits like one that turns. */
+static void capsules_that_stretch(void)
+{
+    double inside = 0;
+    const size_t cases = random_cases(2000);
+    size_t hits = 0;
+    for (size_t i = 0; i < cases; i++) {
+        const double dt = 1. / 240, length_0 = random_bits() % 3 == 0 ? 0 : random_uniform(-0.5, 0.5), none[3] = {0};
+        double along[3], x[3], now[3], v[3];
+        spring_collider c = {.shape = SPRING_CAPSULE, .radius = 0.1, .friction = random_uniform(0, 1)};
+        random_unit(along, 3);
+        const double speed = random_uniform(-30, 30), ahead = random_uniform(-0.8, 0.8);
+        for (int a = 0; a < 3; a++) {
+            c.to[a] = length_0 * along[a];
+            c.velocity_to[a] = speed * along[a];
+            x[a] = ahead * along[a] + random_uniform(-0.08, 0.08);
+        }
+        if (gap_of(&c, x) < 1e-3)
+            continue;
+        spring_scene *s = particle_at(x, none, none, 1);
+        set(s, &c, 1);
+        for (int k = 0; k < 8; k++) {
+            uint32_t count = 1;
+            run(s, with_contacts[i % 2], dt, 1);
+            get(s, now, v);
+            spring_scene_get_colliders(s, &c, &count);
+            inside = fmax(inside, -gap_of(&c, now));
+            hits += length(v) > 0;
+        }
+        free(s);
+    }
+    CHECK(hits > cases / 4, "capsules hit");
+    CHECK_BELOW(inside, 8 * 5 * EPS, "inside: 8 eps (|x| + |at| + size)");
+}
+
+/* A particle bounces between two plates that close on each other almost face to face. While it fits between them, nothing
+   makes it faster than its impacts. */
+static void closing_plates(void)
+{
+    double fastest = 0;
+    for (int i = 0; i < 8; i++)
+        for (int e = 0; e <= 4; e++) {
+            const double tilt = 0.04 * pow(0.1, i), x[3] = {0.01, 0, 0}, v[3] = {0, 10, 0}, none[3] = {0};
+            spring_collider c[2];
+            for (int k = 0; k < 2; k++) {
+                const double side = k == 0 ? 1 : -1, a = side * tilt / 2;
+                c[k] = unit_box;
+                memcpy(c[k].axis, (double[3][3]){{cos(a), sin(a), 0}, {-sin(a), cos(a), 0}, {0, 0, 1}},
+                       sizeof c[k].axis);
+                c[k].at[1] = -side * 0.11, c[k].velocity[1] = side, c[k].restitution = 0.2 * e;
+            }
+            spring_scene *s = particle_at(x, v, none, 2);
+            set(s, c, 2);
+            double now[3], u[3];
+            run(s, SPRING_LEAPFROG, 1. / 240, 1);
+            get(s, now, u);
+            fastest = fmax(fastest, length(u));
+            free(s);
+        }
+    CHECK_BELOW(fastest, 12, "speed: each impact adds at most twice the 1 m/s of a plate to the 10 m/s, or less");
+}
+
+/* The friction of a spinning ball on a particle that lands on it does not depend on a common velocity. */
+static void spinning_ball_in_motion(void)
+{
+    double at[2];
+    for (int moving = 0; moving < 2; moving++) {
+        const double V = 20 * moving, x[3] = {0, 1.008, 0}, v[3] = {0, V - 4, 0}, g[3] = {0, -1000, 0};
+        const spring_collider c = {
+            .shape = SPRING_SPHERE, .radius = 1, .spin = {0, 0, 2}, .friction = 1.4, .velocity = {0, V, 0}};
+        spring_scene *s = particle_at(x, v, g, 1);
+        double now[3], u[3];
+        set(s, &c, 1);
+        run(s, SPRING_LEAPFROG, 1. / 240, 1);
+        get(s, now, u);
+        at[moving] = now[0];
+        free(s);
+    }
+    CHECK_CLOSE(at[1], at[0], 64 * EPS * fabs(at[0]), "rounding of positions of 1 m");
+}
+
 /* -------------------------------------------------------------------------------------------------------- tunnelling */
 
 /* A plate 2 b thick flies through a cloud at up to 500 m/s and turns by up to 0.2 rad in a step. */
@@ -1599,6 +1680,9 @@ static const test tests[] = {
     {"closing grooves", closing_grooves},
     {"inside several", inside_several},
     {"between closing bodies", between_closing_bodies},
+    {"capsules that stretch", capsules_that_stretch},
+    {"closing plates", closing_plates},
+    {"spinning ball in motion", spinning_ball_in_motion},
 };
 
 int main(void)
