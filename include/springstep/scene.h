@@ -331,10 +331,11 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * is the damping matrix of the links in their directions there, divided by the masses, and p(z) approximates (1 -
  * e^-z)/z by a Chebyshev series. A correction for the rotation of links during the step is included. Leapfrog is
  * therefore stable for dt < 2/sqrt(L) at any link damping, and a link that creeps does so at the rate
- * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step, and for dt
- * G > 10000 with friction. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of the
- * kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order falls
- * to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about
+ * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step, and with
+ * friction, for dt G > 10000, or for dt G > 20 where a pressed particle carries a body several times as heavy. In an
+ * impact of links that turn by 0.1 rad in the step, the gain may be a large part of the kinetic energy; it decreases
+ * fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order falls to 1
+ * (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and about
  * 1.6 sqrt(dt G) times beyond. Just below dt G = 0.6, the error is two to three times as large as just above, where a
  * second evaluation is added. Positions, velocities and time are then the whole state: no force is kept. Callbacks are
  * called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2, where v1
@@ -558,9 +559,9 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * The colliders are given at their pose at the current time of the scene. They then move with their velocity,
  * acceleration, spin and spin acceleration until they are set again. After an error, the colliders of the last call
  * keep moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that
- * is inside a collider is moved to its surface in the next step, and out of all of them if it is inside several. The
- * move adds no velocity, but a velocity into the body is then treated as an impact. Pinned particles pass through
- * colliders.
+ * is inside a collider is moved to its surface in the next step, and out of all of them if it is inside several, unless
+ * these face or enclose it, as at the seam of two boxes. The move adds no velocity, but a velocity into the body is then
+ * treated as an impact. Pinned particles pass through colliders.
  *
  * To set colliders once per frame of length T, give the present pose, the present velocity V of the body, and the
  * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and
@@ -588,8 +589,9 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  *
  * The path of a particle near a custom body is searched in steps of the gap, at least 0.4 of `thickness`, so no
  * particle passes through it. The function is called a few times for a particle that rests, and at most 1500 times per
- * step. If more calls would be needed, the particle stops at the last point that is known to be outside. A gap or a
- * normal that is not finite makes the step fail with SPRING_ENONFINITE, or SPRING_EUNSTABLE in a scene with max_speed.
+ * step if the particle touches no other collider. If more calls would be needed, the particle stops at the last point
+ * that is known to be outside. A gap or a normal that is not finite makes the step fail with SPRING_ENONFINITE, or
+ * SPRING_EUNSTABLE in a scene with max_speed.
  *
  * With restitution 1, no friction and no damping, the energy of particles with links is not conserved: it grows, and it
  * grows faster with longer steps. See docs/evidence.md.

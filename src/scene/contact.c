@@ -1201,29 +1201,31 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
 }
 
 /* Between surfaces that close almost face to face, no velocity may fit all constraints except a very large one. Then those
-   of surfaces that the particle has left in this step do not count. far: [m] gaps at x above which it has left */
-static unsigned without_distant(constraint *c, unsigned count, const double *gap, const double *far, double sign,
+   of surfaces that the particle has left in this step do not count. left: [m] gaps at x above which it has left */
+static unsigned without_distant(constraint *c, unsigned count, const double *gap, const double *left, double sign,
                                 vector3 v)
 {
     double fastest = length3(v);
+    bool leaves = false;
     for (unsigned i = 0; i < count; i++) {
         fastest += length3(c[i].velocity);
         c[i].least = -sign * inner(subtract(v, c[i].velocity), c[i].n);
+        leaves = leaves || gap[i] > left[i];
     }
-    if (!(length3(least_change(c, count)) > 2 * fastest))
+    if (!leaves || !(length3(least_change(c, count)) > 2 * fastest))
         return count;
-    unsigned near = 0;
+    unsigned kept = 0;
     for (unsigned i = 0; i < count; i++)
-        if (!(gap[i] > far[i]))
-            c[near++] = c[i];
-    return near;
+        if (!(gap[i] > left[i]))
+            c[kept++] = c[i];
+    return kept;
 }
 
 void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
                          vector3 *v)
 {
     constraint c[most_constraints];
-    double gap[most_constraints], far[most_constraints];
+    double gap[most_constraints], left[most_constraints];
     unsigned count = 0;
     for (unsigned i = 0; i < s->count; i++) {
         if ((touched >> i & 1) == 0)
@@ -1232,11 +1234,11 @@ void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t
         unsigned k = count;
         for (count = add_constraints(p, &s->body[i], i, at_end, x, tolerance, c, count); k < count; k++) {
             gap[k] = -c[k].least;
-            far[k] = tolerance;
+            left[k] = tolerance;
         }
     }
     if (count > 1)
-        count = without_distant(c, count, gap, far, s->h < 0 ? -1 : 1, *v);
+        count = without_distant(c, count, gap, left, s->h < 0 ? -1 : 1, *v);
     stop(s, p, c, count, x, v);
 }
 
