@@ -776,7 +776,7 @@ SPRING_NOINLINE uint32_t for_each_candidate(candidate_chunk *r, rest_step *step)
     uint32_t found = 0;
     for (unsigned c = 0; c < r->setting->count; c++) {
         const contact_body *const b = &r->setting->body[c];
-        if ((nearby >> c & 1) == 0 || b->slips || b->folds || is_custom(b->shape))
+        if ((nearby >> c & 1) == 0 || b->slips || b->degenerate || is_custom(b->shape))
             continue;
         picked_particles l;
         uint8_t list[contact_chunk];

@@ -13,7 +13,7 @@
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
  * Drift     For each contact, in the order of the times of impact:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity. If it is
- *              inside several colliders, this holds for the first, and for others if it is still inside then.
+ *              inside several colliders, it is moved out of the first, and then out of each that it is still inside.
  *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
  *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
  *           3. Impact, if n.u < 0, with u = v0 + theta h a - V, or u = w - V at a second contact: the impulse is
@@ -261,8 +261,8 @@ static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
     axis[2] = cross(axis[0], axis[1]);
 }
 
-/* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. If it turns
-   far, the frame does not turn. */
+/* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. The frame of
+   a degenerate capsule does not turn. */
 static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
 {
     const double before = length3(from), after = length3(to);
@@ -270,8 +270,8 @@ static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
     b->end.segment = b->end.along = to;
     const double cosine = inner(from, to) / (before * after);
     b->turns = !is_zero(subtract(from, to));
-    b->folds = b->turns && !(before > 0 && after > 0 && cosine > -0.5);
-    if (!b->turns || b->folds)
+    b->degenerate = b->turns && !(before > 0 && after > 0 && cosine > -0.5);
+    if (!b->turns || b->degenerate)
         return;
     const vector3 v = scale(1 / (before * after), cross(from, to));
     for (int i = 0; i < 3; i++) {
@@ -1200,8 +1200,9 @@ static void stop(const contact_setting *s, const contact_particle *p, constraint
     spring_contact_record(s, p, c->index, &x, &before, &x, v);
 }
 
-/* Between surfaces that close almost face to face, no velocity may fit all constraints except a very large one. Then those
-   of surfaces that the particle has left in this step do not count. left: [m] gaps at x above which it has left */
+/* Removes the constraints of surfaces that the particle has left in this step, if only a very large velocity fits them and
+   all others, as between surfaces that close almost face to face. Returns the number that remains. left: [m] gaps at x
+   above which it has left */
 static unsigned without_distant(constraint *c, unsigned count, const double *gap, const double *left, double sign,
                                 vector3 v)
 {
@@ -1317,7 +1318,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
             next->index = i;
             next->again = p->touched != 0;
             if (!meet(s, p, next))
-                clear |= s->body[i].folds ? 0 : bit;
+                clear |= s->body[i].degenerate ? 0 : bit;
             else if (first == NULL || next->fraction < first->fraction) {
                 first = next;
                 next = first == &each[0] ? &each[1] : &each[0];

@@ -42,12 +42,12 @@ typedef struct body_pose {
 /* A collider during a step. */
 typedef struct contact_body {
     spring_shape shape;
-    bool moves;    /* its pose depends on time */
-    bool turns;    /* its frame turns, or its segment changes, in this step */
-    bool folds;    /* its segment has or passes the length 0, so the gap along a chord is not convex */
-    bool slips;    /* its surface moves in the frame: the spin of a round body, or `surface` */
-    bool flat;     /* two axes */
-    uint32_t bits; /* of the masks of particles */
+    bool moves;      /* its pose depends on time */
+    bool turns;      /* its frame turns, or its segment changes, in this step */
+    bool degenerate; /* its segment has or passes the length 0, or turns far: the gap along a chord is not convex */
+    bool slips;      /* its surface moves in the frame: the spin of a round body, or `surface` */
+    bool flat;       /* two axes */
+    uint32_t bits;   /* of the masks of particles */
     double half[3], radius, friction, restitution, thickness;
     double rounding_scale; /* [m] of the coordinates that a gap is computed from */
     vector3 surface;       /* [m/s] in the frame; of spheres and capsules, in the scene */
