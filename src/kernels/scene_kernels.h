@@ -233,7 +233,7 @@ typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t f
 
 /* RESTS_DONE: the result is complete. RESTS_TOUCHING: the contact changed the motion. The others: how a particle presses
    on its collider, by find_pressing. */
-typedef enum rest_result { RESTS_DONE = 1, RESTS_TOUCHING = 2, RESTS_PRESSED = 4, RESTS_HELD = 8 } rest_result;
+typedef enum rest_result { RESTS_DONE = 1, RESTS_TOUCHING = 2, RESTS_PRESSED = 4 } rest_result;
 
 /* Particles first ... first + count - 1 of a motion that may touch colliders. */
 typedef struct candidate_chunk {
@@ -250,6 +250,7 @@ typedef struct candidate_chunk {
     uint32_t nearby;     /* bits of the colliders that any of these may touch on paths of this length */
     scalar way;          /* [m] a bound on the length of all paths */
     const scalar *place; /* [m] positions for stop_resting and find_pressing: the first particle on the first axis */
+    scalar returning;    /* for find_pressing: see presses() */
     bool at_end;         /* the stop is at the end of the step */
     uint32_t listed;     /* particles with a candidate */
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
@@ -266,7 +267,7 @@ typedef bool near_kernel(candidate_chunk *);
    completes a kick: it writes v and change. move_resting completes motions of particles that rest or slide: it writes x,
    v, predicted and change. For WHOLE_STEP_CONTACTS it also replaces kept.x0 by x of the motion without contacts.
    find_pressing finds particles that press on their collider at the start of a step, where v of the step is their
-   residual. It adds no impulses, and writes their normals and then their velocities along the surface to change. */
+   residual. It adds no impulses, and writes their normals and then `wanted` of `pressing` (pressed.h) to change. */
 typedef void rest_kernel(candidate_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */

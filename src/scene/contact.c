@@ -377,11 +377,14 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
         b->surface = direction_in(&(body_pose){.axis = {axis[0], axis[1], axis[2]}}, b->surface);
     double angle = b->turns ? length3(subtract(phi1, phi0)) : 0;
     if (capsule) {
-        const vector3 from = subtract(path_of(c->to, c->velocity_to, c->acceleration, t0, flat), b->start.at);
-        const vector3 to = subtract(path_of(c->to, c->velocity_to, c->acceleration, t1, flat), b->end.at);
+        vector3 from = subtract(vector_of(c->to, flat), vector_of(c->at, flat)), to = from;
         b->start.stretching = b->end.stretching = subtract(vector_of(c->velocity_to, flat), velocity);
-        b->moves = b->moves || !is_zero(b->start.stretching);
-        turn_with_segment(b, from, is_zero(b->start.stretching) ? from : to);
+        if (!is_zero(b->start.stretching)) {
+            from = subtract(path_of(c->to, c->velocity_to, c->acceleration, t0, flat), b->start.at);
+            to = subtract(path_of(c->to, c->velocity_to, c->acceleration, t1, flat), b->end.at);
+            b->moves = true;
+        }
+        turn_with_segment(b, from, to);
         if (b->turns)
             angle = 2 * length3(subtract(b->end.axis[0], b->start.axis[0])) +
                     2 * length3(subtract(b->end.axis[1], b->start.axis[1])) +
@@ -824,6 +827,19 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     return true;
 }
 
+/* [m] Of the end of the path from the tangent plane; negative inside. */
+static double inward_at(const meeting *m, vector3 end)
+{
+    const contact_body *const b = m->b;
+    const bool deep = m->start_depth > 0;
+    const double inward = deep ? inner(m->at.normal, subtract(end, m->start)) - m->start_depth
+                               : m->gap + inner(m->at.normal, subtract(end, m->place));
+    if (b->shape != SPRING_CAPSULE || !b->turns)
+        return inward;
+    const double part = m->at.along * (deep ? 1 : 1 - m->fraction); /* of the motion of its end in the frame */
+    return inward - part * inner(m->at.normal, subtract(b->end.segment, b->start.segment));
+}
+
 /* Item 4, late. */
 static int press_late(const contact_setting *s, contact_particle *p, const meeting *m)
 {
@@ -835,8 +851,7 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
     p->d = add_scaled(p->d, -m->time_left, friction);
     /* Onto the tangent plane, in the frame of the body: outside, if the body is convex. */
     const vector3 end = end_in_frame(b, p);
-    const double inward = m->start_depth > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->start_depth
-                                             : m->gap + inner(m->at.normal, subtract(end, m->place));
+    const double inward = inward_at(m, end);
     if (inward < 0 && !(m->again && m->start_depth > 0))
         p->d = add_scaled(p->d, -inward, m->n_end);
     near_point there;
@@ -967,8 +982,7 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
     if (!(fabs(m->time_left) > 0))
         return CONTACT;
     const vector3 end = end_in_frame(b, p);
-    const double inward = m->start_depth > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->start_depth
-                                             : m->gap + inner(m->at.normal, subtract(end, m->place));
+    const double inward = inward_at(m, end);
     if (inward >= 0 && m->start_depth == 0) {
         near_point there;
         if (b->shape == SPRING_PLANE && !b->turns)
@@ -1336,12 +1350,12 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 
 /* ---------------------------------------------------------------------------------------------------------- queries */
 
-bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b)
+bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b, double reach)
 {
     near_point at[3];
     const unsigned found = find_all(p, b, &b->start, p->x0, at);
     for (unsigned i = 0; i < found; i++)
-        if (at[i].gap <= slop_of(s, p, b))
+        if (at[i].gap <= slop_of(s, p, b) + reach)
             return true;
     return false;
 }
@@ -1358,8 +1372,11 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
         contact_particle particle = *p;
         const double tolerance = gap_tolerance(&s, p, &body[k], at_end, x);
         const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, tolerance, c, 0);
+        const vector3 now = frame_velocity(&body[k], &body[k].start, 0, x);
+        const vector3 carried = place_out(&body[k].end, place_in(&body[k].start, x));
+        const vector3 then = frame_velocity(&body[k], &body[k].end, 0, carried);
         for (unsigned i = 0; i < found; i++)
-            surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction, k};
+            surface[count++] = (contact_surface){c[i].n, c[i].velocity, subtract(then, now), c[i].friction, k};
     }
     return count;
 }

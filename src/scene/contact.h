@@ -92,6 +92,7 @@ typedef struct contact_particle {
 typedef struct contact_surface {
     vector3 normal;   /* out of the collider */
     vector3 velocity; /* [m/s] */
+    vector3 change;   /* [m/s] of `velocity` during the step, at a point that the surface carries */
     double friction;  /* with this particle */
     unsigned index;   /* of the collider */
 } contact_surface;
@@ -126,7 +127,8 @@ SPRING_INTERNAL void spring_contact_record(const contact_setting *s, const conta
 enum { most_surfaces = 16 }; /* that a particle touches; further ones are ignored */
 
 /* Whether a particle at p->x0 touches or is inside a collider at the start of the step. */
-SPRING_INTERNAL bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b);
+SPRING_INTERNAL bool spring_contact_touches(const contact_setting *s, contact_particle *p, const contact_body *b,
+                                            double reach);
 
 /* The surfaces of the touched colliders that a particle touches at x, at the start or the end of the drift: those whose
    gap is the least, at most 3 of each collider. Returns their number. */

@@ -13,8 +13,9 @@
 typedef struct scene_contacts {
     contact_setting setting;
     const collider_bounds *bounds;
-    const scalar *radius; /* [m] */
-    size_t radius_stride; /* from particle to particle: 1, or 0: one vector for all particles */
+    const scalar *radius;   /* [m] */
+    const scalar *friction; /* by particle: factor of the friction of colliders; NULL: 1 */
+    size_t radius_stride;   /* from particle to particle: 1, or 0: one vector for all particles */
     scalar equal_radius[padding];
     const scalar *x;                /* [m] positions at the end of the step */
     const uint32_t *touched_before; /* by particle: bit i is set if collider i was touched in the previous step */
@@ -166,8 +167,8 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
 }
 
 /* Particle i, in place k of the chunk. */
-static void prepare_state(const spring_scene *s, const scene_particles *p, const scene_motion *m,
-                          const kept_motion *kept, size_t i, size_t k, contact_state *c)
+static void prepare_state(const spring_scene *s, const scene_contacts *t, const scene_particles *p,
+                          const scene_motion *m, const kept_motion *kept, size_t i, size_t k, contact_state *c)
 {
     const scalar inverse_mass = p->inverse_mass[i * p->mass_stride], drag = p->drag * inverse_mass, q = m->kick * drag;
     c->drag = drag;
@@ -177,6 +178,7 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
         c->correction = (light ? 0 - q : 1) / (1 + q);
     }
     scene_contact_particle(s, i, &c->c);
+    c->c.friction = t->friction != NULL ? (double)t->friction[i] : 1;
     c->free[2] = c->v0[2] = c->x0[2] = 0;
     for (uint32_t a = 0; a < p->axes; a++) {
         const scalar force = kept->force[a * kept->force_stride + k] + p->held[(a * p->stride + i) * p->held_stride];
@@ -194,7 +196,7 @@ SPRING_NOINLINE bool advance_alone(const spring_scene *s, const scene_contacts *
                                    double *way)
 {
     contact_state q;
-    prepare_state(s, p, m, kept, i, k, &q);
+    prepare_state(s, t, p, m, kept, i, k, &q);
     q.c.nearby = nearby;
     const bool fine = advance_in_contact(t, p, m, i, &q);
     *way = fmax(*way, fabs(q.c.d.x) + fabs(q.c.d.y) + fabs(q.c.d.z));
@@ -214,8 +216,8 @@ static inline void apply_masks(const spring_scene *s, candidate_chunk *r)
 }
 
 /* Prepares the arguments of a rest_kernel for a chunk of particles. */
-static void begin_rest(const spring_scene *s, const scene_contacts *t, const scene_particles *p, const scene_motion *m,
-                       kept_motion *kept, size_t from, size_t count, candidate_chunk *r)
+static void begin_rest(const scene_contacts *t, const scene_particles *p, const scene_motion *m, kept_motion *kept,
+                       size_t from, size_t count, candidate_chunk *r)
 {
     r->setting = &t->setting;
     r->bounds = t->bounds;
@@ -223,7 +225,7 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
     r->step = m;
     r->kept = kept;
     r->radius = t->radius;
-    r->friction = scene_read(s, ARRAY_FRICTION);
+    r->friction = t->friction;
     r->radius_stride = t->radius_stride;
     r->first = from;
     r->count = count;
@@ -258,7 +260,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     candidate_chunk r;
     scalar change[3][contact_chunk];
     const bool fine = kernel(p, m, from, from + count); /* false is no failure yet: stops may slow particles down */
-    begin_rest(s, t, p, m, NULL, from, count, &r);
+    begin_rest(t, p, m, NULL, from, count, &r);
     r.change = change[0];
     r.place = x + from;
     r.at_end = at_end;
@@ -297,7 +299,7 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     kernels->keep_motion(p, m, from, count, &kept);
     const bool fine = kernel(p, m, from, from + count);
     memset(t->touched + from, 0, count * sizeof *t->touched);
-    begin_rest(s, t, p, m, &kept, from, count, &r);
+    begin_rest(t, p, m, &kept, from, count, &r);
     r.change = kept.force_copy[0];
     if (!kernels->find_near(&r) && fine)
         return true;

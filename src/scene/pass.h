@@ -115,6 +115,7 @@ static inline void prepare_contacts(scene_step *s)
     spring_scene_place_colliders(s->scene, elapsed_at(s, 0), elapsed_at(s, 1), s->first);
     c->begins = s->first;
     c->x = x_at(s, s->to);
+    c->friction = scene_read(s->scene, ARRAY_FRICTION);
     c->touched_before = scene_read(s->scene, touched_in(s->from));
     c->touched = scene_memory(s->scene, touched_in(s->to));
 }

@@ -1650,22 +1650,51 @@ static double length_on_platform(double dt, double damping_ratio, int every, dou
     return sum / calls;
 }
 
+/* A pose that is set differs from the last one by the change of the acceleration, about 1e-8 m here. */
 static void damped_body_on_platform(void)
 {
-    double G;
-    const double dt = 1. / 480, explicit_length = length_on_platform(dt, 0.1, 8, &G);
-    CHECK(dt * G < 0.4, "explicit damping");
-    CHECK_CLOSE(explicit_length, 0.7, 0.002, "the body keeps its length: docs/details.md");
-    const double heavy_length = length_on_platform(dt, 10, 8, &G);
-    CHECK(dt * G > 7 && dt * G < 8, "heavy damping");
-    CHECK_CLOSE(heavy_length, 0.7, 0.015 * 0.7, "by about 1 %: docs/details.md");
+    static const struct {
+        double damping_ratio, least, most; /* the bounds are of dt G */
+    } cases[] = {{0.1, 0, 0.4}, {1, 0.4, 1}, {10, 7, 8}};
+    for (int i = 0; i < 6; i++) {
+        double G;
+        const double dt = 1. / 480, length = length_on_platform(dt, cases[i % 3].damping_ratio, i < 3 ? 8 : 1, &G);
+        CHECK(dt * G > cases[i % 3].least && dt * G < cases[i % 3].most, "explicit and heavy damping");
+        CHECK_CLOSE(length, 0.7, 0.002, "the body keeps its length");
+    }
+}
+
+/* A body on a heavily damped spring, in a lift that accelerates: the spring bears m (g + a) and is at rest in the lift. */
+static void damped_body_in_a_lift(void)
+{
+    const double foot = 4, body = 300, stiffness = 4e4, damping = 2 * sqrt(stiffness * body), a = 3, dt = 1. / 480;
+    const double x[6] = {0, 0, 0, 0, 0.7, 0}, mass[2] = {foot, body};
+    const spring_link link = {0, 1, 0.8, stiffness, damping, 0};
+    const spring_scene_def def = {.particles = 2,
+                                  .links = 1,
+                                  .position = x,
+                                  .mass = mass,
+                                  .link = &link,
+                                  .gravity = {0, -gravity, 0},
+                                  .colliders = 1};
+    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .acceleration = {0, a, 0}};
+    spring_scene *s = scene_of(&def);
+    double now[6];
+    CHECK(dt * 2 * damping / foot > 7, "an exponential kick of several terms");
+    set(s, &c, 1);
+    run(s, SPRING_LEAPFROG, dt, 480 * 6); /* exp(-6 k/c) = 1e-15 */
+    spring_scene_get(s, SPRING_POSITION, now, 0, 0, 2);
+    CHECK_CLOSE(now[4] - now[1], 0.8 - body * (gravity + a) / stiffness, 64 * 54 * EPS,
+                "Hooke's law, to rounding at 54 m");
+    free(s);
 }
 
 /* A heavy body stands on two feet of a fifteenth of its mass, with damped legs, on a level floor with friction. */
 static void heavy_body_on_feet(void)
 {
-    for (int k = 0; k < 6; k++) {
-        const double foot = 40, body = 600, damping = (k % 3 + 1) * 2 * sqrt(4e4 * 300), mu = k < 3 ? 0.05 : 0.2;
+    static const double ratios[] = {1, 3, 10, 30, 100, 300}, steps[] = {0.9, 0.5, 0.25}, friction[] = {0.05, 0.2};
+    for (int k = 0; k < 6 * 3 * 2; k++) {
+        const double foot = 40, body = 600, damping = ratios[k % 6] * 2 * sqrt(4e4 * 300);
         const double x[9] = {-0.8, 0.3, 0, 0.8, 0.3, 0, 0.1, 1, 0}, mass[3] = {foot, foot, body};
         const spring_link link[3] = {{0, 1, 1.6, 2e6, 0.03 * sqrt(2 * 2e6 * foot), 0},
                                      {0, 2, 1.1 * hypot(0.9, 0.7), 4e4, damping, 0},
@@ -1678,14 +1707,12 @@ static void heavy_body_on_feet(void)
                                       .gravity = {0, -gravity, 0},
                                       .colliders = 1,
                                       .particle_radius = 0.3};
-        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = mu};
+        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction[k / 18]};
         spring_scene *s = scene_of(&def);
         set(s, &c, 1);
-        const double dt = 0.9 * spring_scene_stable_step(s, SPRING_LEAPFROG);
-        const double G = 2 * (damping + link[0].damping) / foot;
-        CHECK(dt * G > 0.6 && dt * G < 6.1, "an exponential kick");
+        const double dt = steps[k / 6 % 3] * spring_scene_stable_step(s, SPRING_LEAPFROG);
         double least = INFINITY, rise = 0, fall = 0;
-        for (int i = 0; i * dt < 30; i++) {
+        for (int i = 0; i * dt < 20; i++) {
             run(s, SPRING_LEAPFROG, dt, 1);
             const spring_scene_energies e = spring_scene_energy(s);
             const double now = e.kinetic + e.elastic + e.gravity;
@@ -1693,10 +1720,123 @@ static void heavy_body_on_feet(void)
             least = fmin(least, now);
             rise = fmax(rise, now - least);
         }
-        CHECK_BELOW(rise, 1e-3 * (fall - least), "energy, in units of the energy lost: docs/details.md");
+        CHECK_BELOW(rise, 0.01 * (fall - least), "energy, in units of the energy lost");
         CHECK(spring_scene_at_rest(s, 1e-3, 0.1), "comes to rest");
         free(s);
     }
+}
+
+/* Bodies of particles of different masses that are all linked, with dampers of 0.3 to 1000 times the critical damping,
+   fall on a slope or slide into a wall. Directions of links are frozen during a step, so energy may rise a little. */
+static void damped_bodies_fall(void)
+{
+    double mean = 0;
+    const int bodies = 300;
+    for (int i = 0; i < bodies; i++) {
+        enum { largest = 8 };
+        const uint32_t n = 4 + (uint32_t)random_uniform(0, 4.99);
+        const double spread = random_log(1, 100), ratio = random_log(0.3, 1000), stiffness = random_log(100, 1e5);
+        const double slope = i % 2 ? random_uniform(-0.4, 0.4) : 0, speed = random_uniform(0, 3);
+        double x[3 * largest], v[3 * largest] = {0}, mass[largest];
+        spring_link link[largest * largest];
+        spring_scene_def def = {.particles = n,
+                                .position = x,
+                                .velocity = v,
+                                .mass = mass,
+                                .link = link,
+                                .gravity = {0, -gravity, 0},
+                                .colliders = 2};
+        for (uint32_t a = 0; a < n; a++) {
+            mass[a] = random_log(1, spread);
+            v[3 * a] = speed;
+            for (uint32_t k = 0; k < 3; k++)
+                x[3 * a + k] = random_uniform(-0.5, 0.5) + (k == 1 ? 1.2 : 0);
+            for (uint32_t b = 0; b < a; b++) {
+                const double length =
+                    hypot(hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1]), x[3 * a + 2] - x[3 * b + 2]);
+                const double reduced = mass[a] * mass[b] / (mass[a] + mass[b]);
+                link[def.links++] = (spring_link){b, a, length, stiffness, 2 * ratio * sqrt(stiffness * reduced), 0};
+            }
+        }
+        const double friction = random_uniform(0, 1);
+        const spring_collider c[2] = {
+            {.shape = SPRING_PLANE, .axis = {{sin(slope), cos(slope), 0}}, .friction = friction},
+            {.shape = SPRING_PLANE, .axis = {{-1, 0, 0}}, .at = {2, 0, 0}, .friction = friction}};
+        spring_scene *s = scene_of(&def);
+        set(s, c, i % 3 == 0 ? 2 : 1);
+        const double dt = random_uniform(0.3, 0.9) * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        double least = INFINITY, rise = 0, kinetic = 0;
+        for (int k = 0; k * dt < 4; k++) {
+            run(s, SPRING_LEAPFROG, dt, 1);
+            const spring_scene_energies e = spring_scene_energy(s);
+            least = fmin(least, e.kinetic + e.elastic + e.gravity);
+            rise = fmax(rise, e.kinetic + e.elastic + e.gravity - least);
+            kinetic = fmax(kinetic, e.kinetic);
+        }
+        mean += rise / kinetic / bodies;
+        free(s);
+    }
+    printf("# energy rises by %.2g of the largest kinetic energy, on average\n", mean);
+    CHECK_BELOW(mean, 0.003, "of the largest kinetic energy, on average");
+}
+
+/* n steps in one call are n calls, to the bit, with capsules that move, turn and change their length. */
+static void steps_and_calls(void)
+{
+    for (int i = 0; i < 400; i++) {
+        double x[3], v[3], g[3] = {0, -gravity, 0};
+        spring_collider c = {.shape = SPRING_CAPSULE, .radius = random_uniform(0.1, 0.4), .friction = i % 3 * 0.3};
+        for (int a = 0; a < 3; a++) {
+            c.at[a] = random_uniform(-0.3, 0.3);
+            c.to[a] = random_uniform(-0.3, 0.3);
+            c.velocity[a] = c.velocity_to[a] = random_uniform(-1, 1);
+            c.velocity_to[a] += i % 2 ? random_uniform(-1, 1) : 0;
+            c.acceleration[a] = i % 4 > 1 ? random_uniform(-3, 3) : 0;
+            x[a] = random_uniform(-0.3, 0.3) + (a == 1 ? 0.8 : 0);
+            v[a] = random_uniform(-1, 1) - (a == 1 ? 2 : 0);
+        }
+        spring_scene *s[2] = {particle_at(x, v, g, 1), particle_at(x, v, g, 1)};
+
+        for (int k = 0; k < 2; k++) {
+            set(s[k], &c, 1);
+            for (int call = 0; call < (k == 0 ? 1 : 40); call++)
+                run(s[k], SPRING_LEAPFROG, 0.01, k == 0 ? 40 : 1);
+        }
+        CHECK(same_bits(s[0], s[1], 1, 3), "n steps are n calls");
+        free(s[0]);
+        free(s[1]);
+    }
+}
+
+/* A particle that lands without restitution or friction on the end of a capsule that becomes shorter stays on it. */
+static void lands_on_an_end(void)
+{
+    const double x[3] = {0.603, 0.807, 0}, v[3] = {0.827, -1.248, 0}, g[3] = {0, -gravity, 0};
+    const spring_collider c = {.shape = SPRING_CAPSULE,
+                               .at = {0.166, -0.121, 0},
+                               .to = {0.817, 0.302, 0},
+                               .radius = 0.321,
+                               .velocity = {0.519, 0.492, 0},
+                               .velocity_to = {-0.796, 0.492, 0}};
+    double speed[3] = {0}, now[3];
+    for (int k = 0; k < 3; k++) {
+        const int rate = 480 << 2 * k;
+        int landings = 0;
+        uint32_t touches = 0, before = 0;
+        spring_scene *s = particle_at(x, v, g, 1);
+        set(s, &c, 1);
+        for (int i = 0; i < 2 * rate / 5; i++, before = touches) {
+            run(s, SPRING_LEAPFROG, 1. / rate, 1);
+            spring_scene_touching(s, &touches, 0, 1);
+            landings += touches != 0 && before == 0;
+        }
+        spring_scene_get(s, SPRING_VELOCITY, now, 0, 0, 1);
+        speed[k] = now[1];
+        CHECK(landings == 1, "it lands once");
+        free(s);
+    }
+    CHECK_BELOW(fabs(speed[0] - speed[2]), 2e-4 + 1e4 * EPS, "v, of second order: (g dt)^2/|v| is 3e-4");
+    CHECK_BELOW(fabs(speed[1] - speed[2]), 2e-4 / 8 + 1e4 * EPS, "about 16 times as small");
 }
 
 /* A state does not have the functions of custom bodies: those of the scene stay, and must be in the same places. */
@@ -1734,7 +1874,11 @@ static void saved_bodies(void)
 
 static const test tests[] = {
     {"damped body on a platform", damped_body_on_platform},
+    {"damped body in a lift", damped_body_in_a_lift},
     {"heavy body on feet", heavy_body_on_feet},
+    {"damped bodies fall", damped_bodies_fall},
+    {"steps and calls", steps_and_calls},
+    {"lands on an end", lands_on_an_end},
     {"saved bodies", saved_bodies},
     {"a hit from rest", hit_from_rest},
     {"links at an edge", links_at_an_edge},

@@ -716,13 +716,13 @@ static void slides_down_a_slope(void)
     }
 }
 
-/* A block that is pushed along a plane stops after u^2/(2 mu g), and friction is mu times the load in each step, however
-   stiff the dampers. */
+/* A block that is pushed along a plane stops after u^2/(2 mu g), and friction is mu times the load in each step to
+   friction_tolerance (pressed.h), however stiff the dampers. */
 static void stops_by_friction(void)
 {
     static model m;
     static state y;
-    const double mu = 0.6, u = 5, up[] = {0, 0, 1}, tolerance = sizeof(scalar) == 4 ? 1e-3 : 1e-6;
+    const double mu = 0.6, u = 5, up[] = {0, 0, 1}, tolerance = friction_tolerance;
     static const struct {
         double damping, of_stable_step;
     } cases[] = {{10, 0.9}, {95, 0.5}, {95, 0.9}, {224, 0.9}};
