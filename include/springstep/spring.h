@@ -69,8 +69,8 @@ typedef enum spring_method {
                                   needs as many force evaluations, except with heavy link damping and with callbacks
                                   that use velocities */
     SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
-    SPRING_SRKN6 /**< order 6, bounded energy error of smooth motion; scenes without damped links; long runs, 3 to 6
-                    significant digits */
+    SPRING_SRKN6 /**< order 6, bounded energy error of smooth motion; scenes without damped links; long runs in which
+                    the energy must not drift */
 } spring_method;
 
 /** The number of methods, for array bounds and `#if`. It is a macro, so that C++ compilers do not warn when it is
