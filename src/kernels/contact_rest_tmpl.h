@@ -732,24 +732,18 @@ static lane_bits pressing_on_collider(candidate_chunk *r, const picked_particles
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
     const size_t first = r->first;
-    const real h = splat((scalar)r->setting->h);
     const real3 x = pick3(l, r->place, p->stride, 1, p->axes), v = pick3(l, m->v0 + first, p->stride, 1, p->axes),
                 residual = pick3(l, m->v + first, p->stride, 1, p->axes);
     real radius, friction;
     pick_surface(r, l, &radius, &friction);
-    real3 normal, velocity, change = {splat(0), splat(0), splat(0)};
+    real3 normal, velocity;
     surface_lanes(b, &b->start, &x, &radius, &normal, &velocity);
-    if (b->moves)
-        change = minus3(body_velocity(b, &b->end, splat(0), plus_scaled3(x, h, velocity)),
-                        body_velocity(b, &b->start, splat(0), x));
     const real3 u = minus3(v, velocity);
-    const real load = dot3(change, normal) - h * dot3(residual, normal), leaving = dot3(u, normal);
+    const real load = -(scalar)r->setting->h * dot3(residual, normal), leaving = dot3(u, normal);
     const real rounding = 64 * SCALAR_EPSILON * (sum_of_sizes(v) + sum_of_sizes(velocity));
     const lane_mask presses = l->where & (load > 0) & ((leaving <= rounding) | (leaving <= r->returning * load));
-    const real approach = select_real(leaving < 0, leaving, splat(0));
-    const real3 wanted = plus_scaled3(minus3(change, u), approach, normal);
     put3(l, &presses, &normal, r->change, contact_chunk, 3);
-    put3(l, &presses, &wanted, r->change + 3 * contact_chunk, contact_chunk, 3);
+    put3(l, &presses, &u, r->change + 3 * contact_chunk, contact_chunk, 3);
     return bits_where(l->where, RESTS_DONE) | bits_where(presses, RESTS_PRESSED);
 }
 

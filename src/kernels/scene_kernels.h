@@ -267,7 +267,8 @@ typedef bool near_kernel(candidate_chunk *);
    completes a kick: it writes v and change. move_resting completes motions of particles that rest or slide: it writes x,
    v, predicted and change. For WHOLE_STEP_CONTACTS it also replaces kept.x0 by x of the motion without contacts.
    find_pressing finds particles that press on their collider at the start of a step, where v of the step is their
-   residual. It adds no impulses, and writes their normals and then `wanted` of `pressing` (pressed.h) to change. */
+   residual. It adds no impulses, and writes their normals and then their velocities relative to the surface to
+   change. */
 typedef void rest_kernel(candidate_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */

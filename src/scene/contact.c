@@ -401,6 +401,7 @@ typedef struct near_point {
     double gap;     /* [m] negative inside */
     vector3 normal; /* unit vector, out of the body */
     double along;   /* capsule: position of the nearest point of its axis, from 0 at `at` to 1 at `to`; else 0 */
+    bool several;   /* the function of a custom body returned several contacts */
 } near_point;
 
 /* from_core: from the nearest point of the core. In the core itself, the normal is +y. */
@@ -449,13 +450,13 @@ static unsigned find_custom(contact_particle *p, const contact_body *b, vector3 
     bool finite = count > 0;
     count = count > 3 ? 3 : count;
     for (unsigned i = 0; i < count; i++) {
-        out[i] = (near_point){gap[i] - b->radius - p->radius, vector_of(normal[i], b->flat), 0};
+        out[i] = (near_point){gap[i] - b->radius - p->radius, vector_of(normal[i], b->flat), 0, count > 1};
         finite = finite && spring_finite(out[i].gap) && spring_finite(size_sum(out[i].normal));
     }
     if (finite)
         return count;
     p->wrong = true;
-    out[0] = (near_point){DBL_MAX, {0, 1, 0}, 0}; /* so that all loops end */
+    out[0] = (near_point){DBL_MAX, {0, 1, 0}, 0, false}; /* so that all loops end */
     return 1;
 }
 
@@ -878,7 +879,8 @@ SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x,
         const double cosine = inner(m->n, direction_out(&b->end, there.normal));
         if (fabs(there.gap) < m->slop / 4)
             return true;
-        if (!(cosine > (custom ? same_face : least_cosine))) /* in a corner, item 5 follows */
+        const bool another = custom && there.several && there.gap < 0 && cosine < 1 - 1e-9;
+        if (another || !(cosine > (custom ? same_face : least_cosine))) /* in a corner, item 5 follows */
             return false;
         double change = -there.gap / (duration * cosine);
         const double slope = there.gap - last_gap;
@@ -1372,13 +1374,19 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
         contact_particle particle = *p;
         const double tolerance = gap_tolerance(&s, p, &body[k], at_end, x);
         const unsigned found = add_constraints(&particle, &body[k], 0, at_end, x, tolerance, c, 0);
-        const vector3 now = frame_velocity(&body[k], &body[k].start, 0, x);
-        const vector3 carried = place_out(&body[k].end, place_in(&body[k].start, x));
-        const vector3 then = frame_velocity(&body[k], &body[k].end, 0, carried);
         for (unsigned i = 0; i < found; i++)
-            surface[count++] = (contact_surface){c[i].n, c[i].velocity, subtract(then, now), c[i].friction, k};
+            surface[count++] = (contact_surface){c[i].n, c[i].velocity, c[i].friction, k};
     }
     return count;
+}
+
+vector3 spring_contact_acceleration(const contact_body *b, vector3 x)
+{
+    const vector3 change = subtract(b->end.velocity, b->start.velocity);
+    if (!b->turns || b->shape == SPRING_CAPSULE)
+        return change;
+    const vector3 y = place_in(&b->start, x), after = cross(b->end.spin, direction_out(&b->end, y));
+    return add(change, subtract(after, cross(b->start.spin, direction_out(&b->start, y))));
 }
 
 double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel)

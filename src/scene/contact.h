@@ -92,7 +92,6 @@ typedef struct contact_particle {
 typedef struct contact_surface {
     vector3 normal;   /* out of the collider */
     vector3 velocity; /* [m/s] */
-    vector3 change;   /* [m/s] of `velocity` during the step, at a point that the surface carries */
     double friction;  /* with this particle */
     unsigned index;   /* of the collider */
 } contact_surface;
@@ -135,6 +134,9 @@ SPRING_INTERNAL bool spring_contact_touches(const contact_setting *s, contact_pa
 SPRING_INTERNAL unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, const contact_particle *p,
                                                  bool at_end, vector3 x, double epsilon,
                                                  contact_surface surface[most_surfaces]);
+
+/* [m/s] The change of the velocity of a point of the frame, which is at x at the start of the drift, in the drift. */
+SPRING_INTERNAL vector3 spring_contact_acceleration(const contact_body *b, vector3 x);
 
 /* The acceleration that is left of `accel` by the normal forces and the static friction of the surfaces. */
 SPRING_INTERNAL double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel);

@@ -21,6 +21,8 @@
 
 #include <math.h>
 
+#include "../simd/size_begin.h"
+
 enum { kick_friction_passes = 4 };
 
 /* Friction differs from its limit by at most this part of it, unless all passes are used. */
@@ -50,9 +52,10 @@ static inline void free_component(const pressed_particle *p, uint32_t axes, scal
 
 /* How one surface presses a particle. */
 typedef struct pressing {
+    unsigned collider;
     scalar normal[3];
-    scalar wanted[3]; /* [m/s] the change of its velocity with which it neither leaves the surface nor slides */
-    bool holds;       /* it does not slide now, and static friction is larger than its residual along the surface */
+    scalar u[3]; /* [m/s] its velocity relative to the surface */
+    bool holds;  /* it does not slide now, and static friction is larger than its residual along the surface */
 } pressing;
 
 /* Whether this is the first step after colliders were set: no step has recorded which particles touch them. */
@@ -61,35 +64,51 @@ static inline bool touching_is_unknown(const scene_step *s)
     return s->contacts.setting.count > 0 && elapsed_at(s, 0) == 0;
 }
 
-/* Whether the surface of a collider that particle i touches presses it: its residual takes it into the collider, and it
-   does not leave. After colliders were set, the new pose may differ from the last one by a little, and particles that
-   return within half of the step press, too. */
+/* Whether the surface of a collider that particle i touches presses it: its residual points into the collider, and it does
+   not leave. After colliders were set, the new pose may differ from the last one by a little, and particles that return
+   within half of the step press, too. */
 static inline bool presses(const scene_step *s, const contact_surface *surface, size_t i, const scalar *residual,
                            pressing *p)
 {
     const size_t stride = s->scene->layout.stride;
     const double n[3] = {surface->normal.x, surface->normal.y, surface->normal.z};
     const double of_surface[3] = {surface->velocity.x, surface->velocity.y, surface->velocity.z};
-    const double change[3] = {surface->change.x, surface->change.y, surface->change.z};
     double leaving = 0, load = 0, speed = 0, slip = 0, pull = 0;
     for (uint32_t a = 0; a < s->particles.axes; a++) {
         const double v = (double)s->whole.v0[a * stride + i];
+        p->normal[a] = (scalar)n[a];
+        p->u[a] = (scalar)(v - of_surface[a]);
         leaving += (v - of_surface[a]) * n[a];
         speed += fabs(v) + fabs(of_surface[a]);
-        load += (change[a] - (double)(s->h * residual[a * stride + i])) * n[a];
+        load -= (double)(s->h * residual[a * stride + i]) * n[a];
     }
     for (uint32_t a = 0; a < s->particles.axes; a++) {
-        const double along = (double)s->whole.v0[a * stride + i] - of_surface[a] - leaving * n[a];
-        const double force = (double)(s->h * residual[a * stride + i]) - change[a] + load * n[a];
+        const double along = (double)p->u[a] - leaving * n[a];
+        const double force = (double)(s->h * residual[a * stride + i]) + load * n[a];
         slip += along * along;
         pull += force * force;
-        p->normal[a] = (scalar)n[a];
-        p->wanted[a] = (scalar)(change[a] - along - fmax(leaving, 0) * n[a]);
     }
     const double rounding = 64 * (double)SCALAR_EPSILON * speed, limit = surface->friction * load;
+    p->collider = surface->index;
     p->holds = slip <= rounding * rounding && pull <= limit * limit;
-    const double returns = touching_is_unknown(s) ? (double)returning * load : 0;
-    return load > 0 && (leaving <= rounding || leaving <= returns);
+    return load > 0 && (leaving <= rounding || (touching_is_unknown(s) && leaving <= (double)returning * load));
+}
+
+/* [m/s] The change of the velocity of particle i in this step with which it neither leaves the surface nor slides at the
+   end. Contacts that are computed after the kick have impacts. Returns its component along the normal. */
+static inline scalar wanted_change(const scene_step *s, size_t i, const pressing *by, scalar wanted[3])
+{
+    const vector3 x = load_vector(s->whole.x0 + i, s->particles.stride, s->particles.axes);
+    const vector3 of_surface = spring_contact_acceleration(&s->contacts.setting.body[by->collider], x);
+    const double change[3] = {of_surface.x, of_surface.y, of_surface.z};
+    scalar leaving = 0, along = 0;
+    for (uint32_t a = 0; a < s->particles.axes; a++)
+        leaving += by->u[a] * by->normal[a];
+    for (uint32_t a = 0; a < s->particles.axes; a++) {
+        wanted[a] = (scalar)change[a] - by->u[a] + (leaving < 0 ? leaving : 0) * by->normal[a];
+        along += wanted[a] * by->normal[a];
+    }
+    return along;
 }
 
 /* Takes away the freedom of a particle along a further normal, unless it is nearly parallel to the others. change: [m/s]
@@ -118,19 +137,16 @@ static inline void add_normal(const scene_step *s, pressed_particle *p, const sc
 }
 
 /* A particle that one surface presses. */
-static inline void begin_pressed(const scene_step *s, pressed_particle *p, size_t i, unsigned collider,
-                                 const pressing *by)
+static inline void begin_pressed(const scene_step *s, pressed_particle *p, size_t i, const pressing *by)
 {
     const scalar *const each = scene_read(s->scene, ARRAY_FRICTION);
-    scalar change = 0;
-    *p = (pressed_particle){.particle = (uint32_t)i, .freedom = FREE_IN_PLANE, .collider = collider};
-    p->coefficient = s->contacts.setting.body[collider].friction * (each != NULL ? (double)each[i] : 1);
-    for (uint32_t a = 0; a < s->particles.axes; a++)
-        change += by->wanted[a] * by->normal[a];
+    *p = (pressed_particle){.particle = (uint32_t)i, .freedom = FREE_IN_PLANE, .collider = by->collider};
+    p->coefficient = s->contacts.setting.body[by->collider].friction * (each != NULL ? (double)each[i] : 1);
+    const scalar change = wanted_change(s, i, by, p->wanted);
     for (uint32_t a = 0; a < s->particles.axes; a++) {
         p->line[a] = p->outwards[a] = by->normal[a];
         p->given[a] = change / s->h * by->normal[a];
-        p->wanted[a] = by->wanted[a] - change * by->normal[a];
+        p->wanted[a] -= change * by->normal[a];
     }
 }
 
@@ -149,32 +165,27 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
    that moves in its frame. The friction of several surfaces acts after the kick, unless it holds the particle. */
 SPRING_NOINLINE bool find_pressing_surfaces(const scene_step *s, size_t i, const scalar *residual, pressed_particle *p)
 {
-    const uint32_t axes = s->particles.axes;
     unsigned count = 0;
-    pressing held = {.holds = false};
+    bool held = false;
     contact_surface surface[most_surfaces];
     const unsigned surfaces = surfaces_at(s, s->contacts.touched_before[i], i, false, s->whole.x0, surface);
     for (unsigned k = 0; k < surfaces; k++) {
         pressing by = {.holds = false};
+        scalar wanted[3] = {0};
         if (!presses(s, &surface[k], i, residual, &by))
             continue;
-        held = by.holds ? by : held;
+        held = held || by.holds;
         if (count++ == 0) {
-            begin_pressed(s, p, i, surface[k].index, &by);
+            begin_pressed(s, p, i, &by);
             continue;
         }
-        scalar change = 0;
-        for (uint32_t a = 0; a < axes; a++) {
-            change += by.wanted[a] * by.normal[a];
+        add_normal(s, p, by.normal, wanted_change(s, i, &by, wanted));
+        for (uint32_t a = 0; a < s->particles.axes; a++)
             p->outwards[a] += by.normal[a];
-        }
-        add_normal(s, p, by.normal, change);
     }
     if (count > 1) {
         p->coefficient = 0;
-        p->freedom = held.holds ? HELD : p->freedom;
-        for (uint32_t a = 0; a < axes && held.holds; a++)
-            p->given[a] = held.wanted[a] / s->h;
+        p->freedom = held ? HELD : p->freedom;
     }
     return count > 0;
 }
@@ -209,7 +220,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
 {
     candidate_chunk r;
     kept_motion kept;
-    scalar vector[6][contact_chunk]; /* see pressing */
+    scalar vector[6][contact_chunk]; /* `normal` and `u` of pressing */
     const size_t left = s->particles.count - from;
     const bool unknown = touching_is_unknown(s);
     begin_rest(&s->contacts, &s->particles, m, &kept, from, left < contact_chunk ? left : contact_chunk, &r);
@@ -224,21 +235,20 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
     for (uint32_t l = 0; l < r.listed; l++) {
         const size_t k = r.list[l];
         pressed_particle *const p = &found->list[found->count];
-        pressing by = {.holds = false};
-        unsigned collider = 0;
+        pressing by = {.collider = 0};
         if (r.done[k] == 0) {
             found->count += find_pressing_surfaces(s, from + k, m->v, p);
             continue;
         }
         if ((r.done[k] & RESTS_PRESSED) == 0)
             continue;
-        while (r.candidate[k] != UINT32_C(1) << collider)
-            collider++;
+        while (r.candidate[k] != UINT32_C(1) << by.collider)
+            by.collider++;
         for (uint32_t a = 0; a < s->particles.axes; a++) {
             by.normal[a] = vector[a][k];
-            by.wanted[a] = vector[3 + a][k];
+            by.u[a] = vector[3 + a][k];
         }
-        begin_pressed(s, p, from + k, collider, &by);
+        begin_pressed(s, p, from + k, &by);
         found->count++;
     }
 }
@@ -503,5 +513,7 @@ static inline void restore_loads(scene_step *s, const pressed_list *pressed, con
         record_change(s, one->particle, one->collider, x, vector_from(one->removed));
     }
 }
+
+#include "../simd/size_end.h"
 
 #endif

@@ -47,16 +47,22 @@ static void turn(const double phi[3], const double a[3], double out[3])
 }
 
 /* One free particle of 0.7 kg. */
-static spring_scene *particle_at(const double x[3], const double v[3], const double g[3], uint32_t colliders)
+static spring_scene *ball_at(const double x[3], const double v[3], const double g[3], double radius, uint32_t colliders)
 {
     spring_scene_def def = {.particles = 1,
                             .position = x,
                             .velocity = v,
                             .mass_all = 0.7,
                             .colliders = colliders,
+                            .particle_radius = (scalar)radius,
                             .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
     memcpy(def.gravity, g, sizeof def.gravity);
     return scene_of(&def);
+}
+
+static spring_scene *particle_at(const double x[3], const double v[3], const double g[3], uint32_t colliders)
+{
+    return ball_at(x, v, g, 0, colliders);
 }
 
 static void get(const spring_scene *s, double x[3], double v[3])
@@ -1689,6 +1695,62 @@ static void damped_body_in_a_lift(void)
     free(s);
 }
 
+/* A particle slides on a floor of two boxes side by side, which overlap by more than its way in a step. */
+static void floor_of_boxes(void)
+{
+    for (int k = 0; k < 60; k++) {
+        const double r = 0.05, speed = random_uniform(0.5, 8), dt = 1. / (60 << k % 3), g[3] = {0, -gravity, 0};
+        const double x[3] = {-speed * random_uniform(0.4, 0.5), r, 0}, v[3] = {speed, 0, 0};
+        spring_collider c[2] = {unit_box, unit_box};
+        spring_scene *s = ball_at(x, v, g, r, 2);
+        for (int i = 0; i < 2; i++) {
+            memcpy(c[i].half, (double[]){5, 0.5, 5}, sizeof c[i].half);
+            memcpy(c[i].at, (double[]){i == 0 ? 1.1 * speed * dt - 5 : 5, -0.5, 0}, sizeof c[i].at);
+        }
+        set(s, c, 2);
+        for (double t = 0; t < 1; t += dt) {
+            double now[3];
+            run(s, SPRING_LEAPFROG, dt, 1);
+            spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+            CHECK_BELOW(fabs(now[1] - r), in_double ? 1e-3 : 4e-3, "it stays on the floor: docs/details.md");
+        }
+        free(s);
+    }
+}
+
+/* The angle between the faces of the function below. */
+static double fold_angle;
+
+/* Two half-spaces, y < 0 and y < x tan(angle): one contact for each. */
+static uint32_t fold(void *user, const double p[3], double gap[3], double n[3][3])
+{
+    (void)user;
+    const double c = cos(fold_angle), s = sin(fold_angle);
+    gap[0] = p[1];
+    gap[1] = c * p[1] - s * p[0];
+    memcpy(n[0], (double[]){0, 1, 0}, sizeof n[0]);
+    memcpy(n[1], (double[]){-s, c, 0}, sizeof n[1]);
+    return 2;
+}
+
+/* A particle slides without friction or gravity through a fold of two faces: it loses the velocity into the second. */
+static void folds(void)
+{
+    for (int k = 0; k < 60; k++) {
+        fold_angle = random_log(0.01, 1.2);
+        const double r = 0.08, speed = random_uniform(0.5, 5), none[3] = {0}, dt = random_uniform(0.5, 1.5) / 480;
+        const double x[3] = {-0.3 * speed, r, 0}, v[3] = {speed, 0, 0};
+        const spring_collider c = {.shape = SPRING_CUSTOM, .gap = fold, .thickness = 1};
+        spring_scene *s = ball_at(x, v, none, r, 1);
+        double now[3];
+        set(s, &c, 1);
+        run(s, SPRING_LEAPFROG, dt, 480);
+        spring_scene_get(s, SPRING_VELOCITY, now, 0, 0, 1);
+        CHECK_CLOSE(hypot(now[0], now[1]), speed * cos(fold_angle), 1e3 * EPS * speed, "v cos(angle)");
+        free(s);
+    }
+}
+
 /* A heavy body stands on two feet of a fifteenth of its mass, with damped legs, on a level floor with friction. */
 static void heavy_body_on_feet(void)
 {
@@ -1876,6 +1938,8 @@ static const test tests[] = {
     {"damped body on a platform", damped_body_on_platform},
     {"damped body in a lift", damped_body_in_a_lift},
     {"heavy body on feet", heavy_body_on_feet},
+    {"floor of boxes", floor_of_boxes},
+    {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
     {"steps and calls", steps_and_calls},
     {"lands on an end", lands_on_an_end},
