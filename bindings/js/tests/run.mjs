@@ -732,6 +732,29 @@ await test("a motion of any size settles after the same frames, without a jump",
     assert(most > 3e-5 && flicked.value === 3, `a velocity moves the value by ${most}`);
 });
 
+await test("sets: the size of a motion is that of Spring after any writes between steps", () => {
+    const options = { duration: 0.4 }; // critically damped: a value within its tolerances stays within them
+    let rests = 0;
+    for (let i = 0; i < 200; i++) {
+        const one = new Spring(0, options);
+        const many = new Springs(1, options);
+        for (let n = 0; n < 400; n++) {
+            if (bits() % (n % 100 < 40 ? 10 : 200) === 0) {
+                if (bits() % 2) for (const spring of [one, many]) spring.finish();
+                const name = ["target", "value", "velocity"][bits() % 3];
+                const number =
+                    bits() % 2 ? [0, 1, -90, 1e6][bits() % 4] : uniform(-1, 1) * logarithmic(1e-4, 1e4);
+                one[name] = many[name][0] = number;
+            }
+            const moving = many.step(1 / 60);
+            one.step(1 / 60);
+            rests += !moving;
+            assert.deepStrictEqual([many.value[0], moving], [one.value, +!one.settled], `frame ${n}`);
+        }
+    }
+    assert(rests > 10000, `${rests} frames at rest`);
+});
+
 await test("without stiffness a value settles where damping stops it", () => {
     for (const [velocity, damping] of [
         [1000, 4],
