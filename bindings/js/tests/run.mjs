@@ -661,11 +661,14 @@ await test("linear() of CSS: within 0.2 % of the way in the range of its declara
             () => linear({ hertz: 1, [option]: option === "onRest" ? null : 0 }),
             `TypeError: an option must be one of hertz, dampingRatio, got "${option}"`,
         );
+    const [short, long] = [linear({ duration: 1e-6 }).duration, linear({ duration: 1 }).duration];
+    assert(Math.abs(short / long - 1e-6) < 1e-11, `${short} and ${long} ms`);
     refused(() => linear({ duration: 1, bounce: 1 }), "RangeError: the spring does not settle");
     for (const [options, velocity] of [
         [{ duration: 0.5, bounce: 0.999 }],
         [{ hertz: 1, dampingRatio: 0.1 }, 1e4],
         [{ hertz: 1, dampingRatio: 10 }, -200],
+        [{ hertz: 1, dampingRatio: 692 }, -847],
     ])
         refused(() => linear(options, velocity), "RangeError: the motion is too fast for an easing...");
 });
