@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Many values, each with its own target: spring_batch_follow_moving() without a load.
-import { check, checkFinite, checkOnRest, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
+import { check, checkFinite, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
 import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
 import { changed, listener, moves } from "./watch.js";
 
-/** Settings of each value; if no option is an array, of all values. */
+/** Settings of each value; if no option is an array, of all values. Replaces arrays in the options by copies. */
 function settingsOf(options, count) {
     const lists = Object.entries(options).filter(
         ([name, value]) =>
             name !== "clamp" && name !== "onRest" && typeof value === "object" && value?.length >= 0,
     );
-    for (const [name, { length }] of lists) check(length === count, `${name}.length`, `${count}`, length);
+    for (const list of lists) {
+        const [name, { length }] = list;
+        check(length === count, `${name}.length`, `${count}`, length);
+        list[1] = options[name] = Array.from(list[1]);
+    }
     if (lists.length === 0) return settings(options);
     return Array.from({ length: count }, (_, i) => {
         try {
@@ -43,8 +47,6 @@ export class Springs {
     #failed = -1; // first value that has kept its state in a step
     #steered = false; // whether targets may have velocities
     #rested = []; // values that came to rest in a step
-    #onRest = null;
-    clamp = false;
     [listener] = null;
 
     constructor(count, options = {}) {
@@ -106,13 +108,20 @@ export class Springs {
         return away === 0 || (isNumber(away) && !this.#propagator(i).omega2);
     }
 
+    get clamp() {
+        return this.#given.clamp ?? false;
+    }
+
+    set clamp(clamp) {
+        this.set({ clamp: clamp ?? null });
+    }
+
     get onRest() {
-        return this.#onRest;
+        return this.#given.onRest ?? null;
     }
 
     set onRest(onRest) {
-        checkOnRest(onRest);
-        this.#onRest = onRest;
+        this.set({ onRest: onRest ?? null });
     }
 
     set(options) {
@@ -122,7 +131,6 @@ export class Springs {
         this.#settings = settingsOf(given, this.#value.length);
         this.#given = given;
         this.#relative = given.restDelta == null || given.restSpeed == null;
-        ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         changed(this);
     }
 
