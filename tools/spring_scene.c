@@ -619,7 +619,7 @@ static void choose_step(spring_scene *scene, bool disturbed)
 static void remark_on_step(spring_scene *scene, bool disturbed)
 {
     const spring_method m = (spring_method)method;
-    if (cli_given(&length.dt) || steps_per_frame > 0)
+    if (cli_given(&length.dt) || cli_given(&length.duration) || steps_per_frame > 0)
         run_length_remark_end(&length);
     run_length_remark_step(length.dt, spring_scene_stable_step(scene, m), m);
     if (disturbed && !(length.dt < disturbance_time / 4))

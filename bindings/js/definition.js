@@ -31,6 +31,13 @@ export function checkArray(name, value, length) {
     check(length === undefined || value.length === length, `${name}.length`, `${length}`, value?.length);
 }
 
+/** Gravity may omit the axes that a scene does not have. */
+export function checkGravity(gravity, axes) {
+    checkArray("gravity", gravity);
+    const { length } = gravity;
+    check(length === 3 || length === axes, "gravity.length", `${axes}${axes < 3 ? " or 3" : ""}`, length);
+}
+
 let table; // of methods, by name
 
 function known() {
@@ -391,7 +398,7 @@ export function define(take, definition) {
     if (pinned) checkArray("pinned", pinned, particles);
     if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
     else checkArray("mass", mass, particles);
-    checkArray("gravity", gravity);
+    checkGravity(gravity, axes);
     checkArray("methods", methods);
     if (base) checkArray("base", base, 3 * particles);
     checkUpTo("component", component, 3 - axes);

@@ -26,6 +26,7 @@ export function grid(definition) {
     const { count, height = false, axes = height ? 1 : 3, spacing, stretch = 1 } = definition;
     const { stiffness, damping = 0, families: linked = ["structural"], pinned = [] } = definition;
     checkArray("count", count);
+    check([1, 2, 3].includes(count.length), "count.length", "1, 2 or 3", count.length);
     const [x, y = 1, z = 1] = count;
     [x, y, z].forEach((each, i) => checkCount(`count[${i}]`, each, 1));
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);

@@ -161,6 +161,7 @@ export declare class Springs {
     /** Values, velocities and targets are 0. The default options are `{ duration: 0.5 }`. */
     constructor(count: number, options?: SpringsOptions);
 
+    // If one of the four numbers of a value has changed since the last step, step() computes the size of its motion anew.
     readonly value: Float64Array;
     readonly velocity: Float64Array;
     readonly target: Float64Array;

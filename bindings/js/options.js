@@ -18,9 +18,6 @@ const checkNotNegative = (name, value) =>
 const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 
-export const checkOnRest = (onRest) =>
-    check(onRest === null || typeof onRest === "function", "onRest", "a function or null", onRest, TypeError);
-
 /** The decay rate of the slowest mode, in units of omega. */
 const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + sqrt(ratio - 1) * sqrt(ratio + 1)));
 
@@ -47,19 +44,21 @@ export const inspected = Symbol.for("nodejs.util.inspect.custom");
 /** The size of a motion that begins at a distance from the target with a velocity. */
 export const sizeOf = (p, distance, velocity) => abs(p.omega2 && distance) + abs(velocity) * p.reach;
 
-const wayOf = (options) => Object.keys(ways).find((name) => options[name] !== undefined);
+const wayOf = (options) => Object.keys(ways).find((name) => name in options);
 
-/** New options, and of those before them tolerances, and parameters in the same way. */
+/** New options, and of those before them all but parameters in another way. An undefined option is not given. */
 export function merged(options, before) {
     check(Object(options) === options, "options", "an object", options, TypeError);
-    const { restDelta, restSpeed } = before;
-    const way = wayOf(options);
-    return { ...(way && way !== wayOf(before) ? { restDelta, restSpeed } : before), ...options };
+    const given = {};
+    for (const name in options) if (options[name] !== undefined) given[name] = options[name];
+    const { restDelta, restSpeed, clamp, onRest } = before;
+    const way = wayOf(given);
+    return { ...(way && way !== wayOf(before) ? { restDelta, restSpeed, clamp, onRest } : before), ...given };
 }
 
 /**
- * Of new options, and options before them that stay: all of these as `given`, the propagator p, and the tolerances of distance
- * and speed in a motion of a size.
+ * Of new options, and options before them that stay: all of these as `given`, the propagator p, the tolerances of distance
+ * and speed in a motion of a size, clamp and onRest.
  */
 export function settings(options, before = {}, others = ["restDelta", "restSpeed", "clamp", "onRest"]) {
     const given = merged(options, before);
@@ -67,17 +66,14 @@ export function settings(options, before = {}, others = ["restDelta", "restSpeed
     checkNotNegative("restDelta", restDelta ?? 0);
     checkNotNegative("restSpeed", restSpeed ?? 0);
     const way = wayOf(given) ?? "duration";
-    const [omegaOf, second] = ways[way];
-    const possible = [way, ...ways[way].slice(1), ...others];
-    for (const name in given)
-        check(
-            possible.includes(name) || given[name] === undefined,
-            "an option",
-            `one of ${possible.join(", ")}`,
-            name,
-        );
+    const [omegaOf, ...further] = ways[way];
+    const [second] = further;
+    const possible = [way, ...further, ...others];
+    for (const name in options)
+        if (options[name] !== undefined)
+            check(possible.includes(name), "an option", `one of ${possible.join(", ")}`, name);
     check(typeof clamp === "boolean", "clamp", "a boolean", clamp, TypeError);
-    checkOnRest(onRest);
+    check(onRest === null || typeof onRest === "function", "onRest", "a function or null", onRest, TypeError);
     let { stiffness, damping, mass = 1 } = given;
     if (omegaOf) {
         const { [way]: first = 0.5, [second]: shape = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = given;
@@ -91,7 +87,7 @@ export function settings(options, before = {}, others = ["restDelta", "restSpeed
         const omega = omegaOf(first, ratio, tolerance);
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
-        check(stiffness >= leastNormal, "stiffness", "a normal number", stiffness);
+        check(stiffness >= leastNormal && isNumber(stiffness), way, "in range", first);
     }
     checkNotNegative("stiffness", stiffness);
     checkNotNegative("damping", damping);
@@ -100,5 +96,5 @@ export function settings(options, before = {}, others = ["restDelta", "restSpeed
     checkFinite("damping / mass", damping / mass);
     const p = new Propagator(stiffness, damping, mass);
     const tolerances = (size) => [restDelta ?? size / 1e4, restSpeed ?? size / 1e3];
-    return { given, p, tolerances };
+    return { given, p, tolerances, clamp, onRest };
 }

@@ -3,6 +3,7 @@
 import {
     checkArray,
     checkCount,
+    checkGravity,
     checkKnown,
     colliderBytes,
     collidersAt,
@@ -233,7 +234,7 @@ export class Scene {
     }
 
     setGravity(gravity) {
-        checkArray("gravity", gravity);
+        checkGravity(gravity, this.axes);
         for (let i = 0; i < gravity.length; i++) checkFinite(`gravity[${i}]`, gravity[i]);
         const [x = 0, y = 0, z = 0] = gravity;
         borrowed((take) => this.#call("spring_scene_set_gravity", this.#scene, lend(take, [x, y, z])));

@@ -187,7 +187,7 @@ export interface SceneDefinition {
     pinned?: ArrayLike<number | boolean>;
     links?: Links | readonly Link[];
     weightedLinks?: WeightedLinks;
-    /** [m/s^2] */
+    /** [m/s^2], of 3 numbers, or one for each axis */
     gravity?: ArrayLike<number>;
     /** [N s/m] >= 0, on every particle */
     drag?: number;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One value that follows a target: spring_follow() without a load.
 import { abs, epsilon, min, PI } from "./elementary.js";
-import { checkFinite, checkOnRest, inspected, isNumber, settings, sizeOf } from "./options.js";
+import { checkFinite, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
 import { restTime, turningTime } from "./settling.js";
 import { changed, listener } from "./watch.js";
@@ -17,8 +17,6 @@ export class Spring {
     #size = 0; // of the motion since the target or the velocity was set
     #finished = null; // the promise
     #finish;
-    #onRest = null;
-    clamp = false;
     [listener] = null;
 
     constructor(value = 0, options = {}) {
@@ -90,18 +88,24 @@ export class Spring {
         return (this.#finished ??= new Promise((resolve) => (this.#finish = resolve)));
     }
 
+    get clamp() {
+        return this.#settings.clamp;
+    }
+
+    set clamp(clamp) {
+        this.set({ clamp: clamp ?? null });
+    }
+
     get onRest() {
-        return this.#onRest;
+        return this.#settings.onRest;
     }
 
     set onRest(onRest) {
-        checkOnRest(onRest);
-        this.#onRest = onRest;
+        this.set({ onRest: onRest ?? null });
     }
 
     set(options) {
         this.#settings = settings(options, this.#settings.given);
-        ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         if (!this.#settled) changed(this);
         else if (this.#value !== this.#target && this.#settings.p.omega2) this.#moves(); // it had no stiffness
     }

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Many values, each with its own target: spring_batch_follow_moving() without a load.
-import { check, checkFinite, checkOnRest, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
+import { check, checkFinite, inspected, isNumber, merged, settings, sizeOf } from "./options.js";
 import { abs, epsilon, leastNormal, PI } from "./elementary.js";
 import { lands } from "./propagator.js";
 import { changed, listener, moves } from "./watch.js";
 
-/** Settings of each value; if no option is an array, of all values. */
+/** Settings of each value; if no option is an array, of all values. Replaces arrays in the options by copies. */
 function settingsOf(options, count) {
     const lists = Object.entries(options).filter(
         ([name, value]) =>
             name !== "clamp" && name !== "onRest" && typeof value === "object" && value?.length >= 0,
     );
-    for (const [name, { length }] of lists) check(length === count, `${name}.length`, `${count}`, length);
+    for (const list of lists) {
+        const [name, { length }] = list;
+        check(length === count, `${name}.length`, `${count}`, length);
+        list[1] = options[name] = Array.from(list[1]);
+    }
     if (lists.length === 0) return settings(options);
     return Array.from({ length: count }, (_, i) => {
         try {
@@ -38,13 +42,11 @@ export class Springs {
     #targetVelocity;
     #value;
     #velocity;
-    #targets; // of the last step
-    #sizes; // of the motions to these targets
+    #last; // values, velocities, targets and their velocities after the last step
+    #sizes; // of the motions
     #failed = -1; // first value that has kept its state in a step
     #steered = false; // whether targets may have velocities
     #rested = []; // values that came to rest in a step
-    #onRest = null;
-    clamp = false;
     [listener] = null;
 
     constructor(count, options = {}) {
@@ -56,9 +58,14 @@ export class Springs {
             zeros(),
             zeros(),
         ];
-        [this.#targets, this.#sizes] = [zeros(), zeros()];
+        this.#last = this.#state.map(zeros);
+        this.#sizes = zeros();
         this.set(options);
         if (new.target === Springs) Object.seal(this);
+    }
+
+    get #state() {
+        return [this.#value, this.#velocity, this.#target, this.#targetVelocity];
     }
 
     // A caller that reads an array may write to it.
@@ -101,23 +108,29 @@ export class Springs {
         return away === 0 || (isNumber(away) && !this.#propagator(i).omega2);
     }
 
+    get clamp() {
+        return this.#given.clamp ?? false;
+    }
+
+    set clamp(clamp) {
+        this.set({ clamp: clamp ?? null });
+    }
+
     get onRest() {
-        return this.#onRest;
+        return this.#given.onRest ?? null;
     }
 
     set onRest(onRest) {
-        checkOnRest(onRest);
-        this.#onRest = onRest;
+        this.set({ onRest: onRest ?? null });
     }
 
     set(options) {
         const given = merged(options, this.#given);
         for (let i = 0; this.#settings && i < this.#value.length; i++)
-            if (this.#rests(i)) this.#targets[i] = NaN; // if this gives it stiffness, a motion begins
+            if (this.#rests(i)) this.#last[0][i] = NaN; // if this gives it stiffness, a motion begins
         this.#settings = settingsOf(given, this.#value.length);
         this.#given = given;
         this.#relative = given.restDelta == null || given.restSpeed == null;
-        ({ clamp: this.clamp = this.clamp, onRest: this.onRest = this.onRest } = options);
         changed(this);
     }
 
@@ -153,18 +166,14 @@ export class Springs {
         this.#failed = -1;
         if (!Array.isArray(each)) moving = this.#advance(each, 0, count, dt);
         else for (let i = 0; i < count; i++) moving += this.#advance(each[i], i, i + 1, dt);
+        if (this.#relative) this.#state.forEach((now, k) => this.#last[k].set(now));
         this.#tell();
         this.#complain();
         return moving;
     }
 
     [moves]() {
-        const [value, velocity, target, speed] = [
-            this.#value,
-            this.#velocity,
-            this.#target,
-            this.#targetVelocity,
-        ];
+        const [value, velocity, target, speed] = this.#state;
         return value.some(
             (x, i) => !this.#rests(i) && isNumber(0 * x + 0 * velocity[i] + 0 * target[i] + 0 * speed[i]),
         );
@@ -193,26 +202,20 @@ export class Springs {
         if (failure) throw failure.error;
     }
 
-    /** A motion begins at a new target, at a value on its target, and without stiffness when it becomes faster.
-     *  Returns the largest size of a motion. */
+    /** Computes the sizes of motions whose state was written since the last step. Returns the largest size of all. */
     #measure(p, from, end) {
-        const [value, velocity, target, speed] = [
-            this.#value,
-            this.#velocity,
-            this.#target,
-            this.#targetVelocity,
-        ];
-        const targets = this.#targets;
+        const [value, velocity, target, speed] = this.#state;
+        const [lastValue, lastVelocity, lastTarget, lastSpeed] = this.#last;
         const sizes = this.#sizes;
         let largest = 0;
         for (let i = from; i < end; i++) {
-            const goal = target[i];
-            const begins = goal !== targets[i] || (goal === value[i] && velocity[i] !== 0);
-            const size = begins || !p.omega2 ? sizeOf(p, goal - value[i], velocity[i] - speed[i]) : 0;
-            if (begins || size > sizes[i]) {
-                targets[i] = goal;
-                sizes[i] = size;
-            }
+            if (
+                target[i] !== lastTarget[i] ||
+                value[i] !== lastValue[i] ||
+                velocity[i] !== lastVelocity[i] ||
+                speed[i] !== lastSpeed[i]
+            )
+                sizes[i] = sizeOf(p, target[i] - value[i], velocity[i] - speed[i]);
             if (sizes[i] > largest) largest = sizes[i];
         }
         return largest;
@@ -220,12 +223,7 @@ export class Springs {
 
     /** Advances values with equal settings, and returns how many of them move. */
     #advance({ p, tolerances }, from, end, dt) {
-        const [value, velocity, target, targetVelocity] = [
-            this.#value,
-            this.#velocity,
-            this.#target,
-            this.#targetVelocity,
-        ];
+        const [value, velocity, target, targetVelocity] = this.#state;
         const sizes = this.#sizes;
         const [mostDelta] = tolerances(this.#relative ? this.#measure(p, from, end) : 0);
         const attracts = p.omega2 > 0; // without stiffness, only the velocity of a target has an effect
@@ -271,7 +269,6 @@ export class Springs {
                 if (passed || near(abs(x - goal), u, sizes[i]) || lands(x, to, y, u, fraction, omega2)) {
                     if (tells && speed === 0 && !this.#rests(i)) this.#rested.push(i);
                     value[i] = attracts ? goal : x;
-                    if (!attracts) sizes[i] = 0;
                     velocity[i] = speed;
                     resting += speed === 0;
                     continue;

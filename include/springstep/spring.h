@@ -196,8 +196,10 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  * @par Accuracy  Without load, the error of (x, v/omega) is at most
  *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
  *                where zeta is the damping ratio, Phi is the propagator of (x, v/omega), and all norms are Euclidean.
- *                The bound also holds at critical damping. A load adds a term to x. The error of this term is at most
- *                8 eps (1 + omega |dt|) times the term, or times accel/omega2 for an oscillating spring
+ *                The bound also holds at critical damping. A load adds a term to x. For dt > 0, the error of this term is
+ *                at most 8 eps (1 + omega dt) times the term, or times accel/omega2 for an oscillating spring. For
+ *                dt < 0, it is at most 8 eps (1 + 2 zeta omega |dt|) times the term if zeta > 1, and otherwise
+ *                8 eps (1 + omega |dt|) times the larger of the term and e^(zeta omega |dt|) accel/omega2
  *                (tests/spring/test_exact.c).
  * @par Source    src/spring/exact_formula_tmpl.h derives the formula
  * @par Threads   re-entrant; allocates nothing and keeps no state

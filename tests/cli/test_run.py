@@ -130,9 +130,12 @@ def test_rows_alone_say_where_a_run_ends(tool):
     assert (result.returncode, result.stderr) == (0, '')
 
 
-def test_rounding_to_a_default_step_is_not_remarked_on():
-    result = run(SCENE, '--scene', 'rope', '--method', 'leapfrog', '--duration', '0.02')
-    assert (result.returncode, result.stderr) == (0, '')
+def test_rounding_to_a_default_step_is_remarked_on_if_the_duration_is_given():
+    args = ['--scene', 'rope', '--method', 'leapfrog', '--fps']
+    assert re.fullmatch(f'{SCENE}: {NOT_WHOLE}', run(SCENE, *args, '7', '--duration', '0.1').stderr.rstrip('\n'))
+    for more in (['7', '--duration', '1'], ['7.3']):
+        result = run(SCENE, *args, *more)
+        assert (result.returncode, result.stderr) == (0, '')
 
 
 def test_times_of_a_given_step_are_its_multiples():

@@ -1044,6 +1044,8 @@ await test("errors name field and value, and change nothing", () => {
         ],
         [{ mass: 0 }, "RangeError: mass must be a finite number > 0 with a finite reciprocal, got 0"],
         [{ pinned: [1] }, "RangeError: pinned.length must be 2, got 1"],
+        [{ gravity: [0, NaN, 0, 0] }, "RangeError: gravity.length must be 2 or 3, got 4"],
+        [{ axes: 3, position: [0, 0, 1], gravity: [0, 1] }, "RangeError: gravity.length must be 3, got 2"],
         [{ gravity: [0, NaN] }, "RangeError: gravity[1] must be a finite number, got NaN"],
         [{ drag: -1 }, `RangeError: drag must be ${finite}, got -1`],
         [{ drag: "1" }, 'TypeError: drag must be a finite number, got "1"'],
@@ -1083,6 +1085,7 @@ await test("errors name field and value, and change nothing", () => {
     ])
         refused(scene(more), wanted);
     for (const [more, wanted] of [
+        [{ count: [1, 2, 3, 4] }, "RangeError: count.length must be 1, 2 or 3, got 4"],
         [{ count: [0] }, "RangeError: count[0] must be an integer >= 1, got 0"],
         [{ spacing: -1 }, "RangeError: spacing must be a finite number > 0, got -1"],
         [{ count: [1e5, 1e5] }, "RangeError: count must be small enough..."],
@@ -1093,6 +1096,7 @@ await test("errors name field and value, and change nothing", () => {
     const one = scene({})();
     const hash = hashOf(one);
     for (const [run, wanted] of [
+        [() => one.setGravity([0]), "RangeError: gravity.length must be 2 or 3, got 1"],
         [() => one.advance("leapfrog", NaN), "RangeError: dt must be a finite number, got NaN"],
         [() => one.advance("leapfrog", 0.1, -1), "RangeError: steps must be an integer >= 0, got -1"],
         [() => one.advance("rk4", 0.1), "TypeError: the scene is defined without the method rk4"],

@@ -18,6 +18,15 @@ F = TypeVar("F", bound=np.floating[Any])
 _PRECISIONS = {np.dtype(np.float64): ("spring_batch", "double[]"), np.dtype(np.float32): ("spring_batchf", "float[]")}
 
 
+def _rounded(field: str, value: Any, dtype: np.dtype[F], underflows: bool = False) -> Any:
+    """Return a number in a precision. A finite number must not overflow, or underflow to 0 unless this is allowed."""
+    with np.errstate(over="ignore", under="ignore"):
+        number = np.asarray(value, dtype)
+    if np.isfinite(value) and not (np.isfinite(number) and (underflows or number != 0 or value == 0)):
+        invalid(field, float(value), reason=f"out of the range of {dtype}")
+    return number
+
+
 class Batch(Generic[F]):
     """Many independent springs: x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'.
 
@@ -32,7 +41,8 @@ class Batch(Generic[F]):
     v : ndarray
         Velocities [m/s].
     omega2 : ndarray or float
-        stiffness/mass >= 0 [1/s^2]. Parameters are arrays like x, or one number for all springs.
+        stiffness/mass >= 0 [1/s^2]. Parameters are arrays like x, or one number for all springs, which must be 0 or in the
+        range of the precision.
     gamma : ndarray or float, optional
         damping/mass >= 0 [1/s]; None: no damping, without cost.
     accel : ndarray or float, optional
@@ -62,7 +72,7 @@ class Batch(Generic[F]):
         for field, given in (("omega2", omega2), ("gamma", gamma), ("accel", accel)):
             values: Any = given
             if values is not None and np.ndim(values) == 0:
-                values = np.asarray(values, x.dtype)
+                values = _rounded(field, values, x.dtype)
                 self._batch.shared |= getattr(lib, f"SPRING_SHARED_{field.upper()}")
             self._parameters[field] = values
             if values is not None:
@@ -171,6 +181,8 @@ class Batch(Generic[F]):
         first = int(failed[0]) if len(failed) else None
         try:
             finite("dt", dt)
+            if status == lib.SPRING_EINVAL and abs(dt) > float(np.finfo(self.dtype).max):
+                invalid("dt", dt, reason=f"out of the range of {self.dtype}")
             for index in failed if len(failed) else [None]:
                 self._first_invalid(None if index is None else int(index), target, target_velocity)
             if first is None:
@@ -220,7 +232,9 @@ class Batch(Generic[F]):
 
     def _target(self, field: str, target: Any) -> NDArray[F]:
         """Return an array like x that does not share its memory."""
-        goals: NDArray[F] = np.full(len(self), target, self._x.dtype) if np.ndim(target) == 0 else target
+        goals: NDArray[F] = target
+        if np.ndim(target) == 0:
+            goals = np.full(len(self), _rounded(field, target, self.dtype, underflows=True), self.dtype)
         self._as_lent(field, goals)
         for name, state in (("x", self._x), ("v", self._v)):
             if np.may_share_memory(state, goals):

@@ -26,7 +26,7 @@ class Clock:
         if finite("dt", dt) <= 0:
             invalid("dt", dt)
         self.dt: float = dt
-        self.max_steps: int = step_count(max_steps)
+        self.max_steps: int = step_count(max_steps, "max_steps")
         self._clock: Any = ffi.new("spring_clock *")
         self._alpha = ffi.new("double *")
 
@@ -79,8 +79,8 @@ class Clock:
         snapshot : tuple of float
             See `snapshot`.
         """
-        self._clock.pending, self._clock.dropped = snapshot
-        self._clock.skipped = 0
+        pending, dropped = snapshot
+        self._clock = ffi.new("spring_clock *", {"pending": pending, "dropped": dropped})
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent clocks."""

@@ -212,11 +212,11 @@ def springs_method(name: MethodName) -> int:
     return number
 
 
-def step_count(steps: int) -> int:
+def step_count(steps: int, field: str = "steps") -> int:
     """Return a number of steps that C can count."""
     steps = operator.index(steps)
     if not 0 <= steps < 2**64:
-        invalid("steps", steps)
+        invalid(field, steps)
     return steps
 
 

@@ -497,7 +497,7 @@ class Scene(Generic[F]):
             As in `advance`. Its attribute `recorded` has the frames before the error. After any exception, also that of
             Ctrl-C or of `progress`, the scene is as before the run, except with ``undo=False``.
         """
-        steps, every = step_count(steps), 1 if every is None else step_count(every)
+        steps, every = step_count(steps), 1 if every is None else step_count(every, "every")
         if every == 0:
             invalid("every", every, reason="not a number of steps >= 1")
         frames = 1 - -steps // every

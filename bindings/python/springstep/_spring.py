@@ -71,9 +71,12 @@ class Spring:
     @classmethod
     def _made(cls, params: Any, x: float, v: float, *arguments: tuple[str, float, bool]) -> Spring:
         """Return a spring of parameters that C has made. If C has refused its arguments, the first invalid one is named."""
-        for field, value, good in arguments if math.isnan(params.mass) else ():
-            if not good:
-                invalid(field, value)
+        if math.isnan(params.mass):
+            for field, value, good in arguments:
+                if not good:
+                    invalid(field, value)
+            fields, values, _ = zip(*arguments)
+            invalid(", ".join(fields), values, reason="stiffness or damping is out of range")
         return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
 
     @classmethod
@@ -90,7 +93,8 @@ class Spring:
             As in `Spring`.
         """
         return cls._made(lib.spring_params_hertz(hertz, damping_ratio), x, v,
-                         ("damping_ratio", damping_ratio, 0 <= damping_ratio < math.inf), ("hertz", hertz, False))
+                         ("damping_ratio", damping_ratio, 0 <= damping_ratio < math.inf),
+                         ("hertz", hertz, 0 <= hertz < math.inf))
 
     @classmethod
     def half_life(cls, half_life: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
@@ -106,7 +110,8 @@ class Spring:
             As in `Spring`.
         """
         return cls._made(lib.spring_params_half_life(half_life, damping_ratio), x, v,
-                         ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf), ("half_life", half_life, False))
+                         ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf),
+                         ("half_life", half_life, 0 < half_life < math.inf))
 
     @classmethod
     def response(cls, response: float, damping_fraction: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
@@ -123,7 +128,7 @@ class Spring:
         """
         return cls._made(lib.spring_params_response(response, damping_fraction), x, v,
                          ("damping_fraction", damping_fraction, 0 <= damping_fraction < math.inf),
-                         ("response", response, False))
+                         ("response", response, 0 < response < math.inf))
 
     @classmethod
     def bounce(cls, duration: float, bounce: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
@@ -139,7 +144,7 @@ class Spring:
             As in `Spring`.
         """
         return cls._made(lib.spring_params_bounce(duration, bounce), x, v, ("bounce", bounce, -1 < bounce <= 1),
-                         ("duration", duration, False))
+                         ("duration", duration, 0 < duration < math.inf))
 
     @classmethod
     def settling(cls, time: float, damping_ratio: float, tolerance: float = 1e-3, *, x: float = 0.0,
@@ -159,7 +164,7 @@ class Spring:
         """
         return cls._made(lib.spring_params_settling(time, damping_ratio, tolerance), x, v,
                          ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf),
-                         ("tolerance", tolerance, 0 < tolerance < 1), ("time", time, False))
+                         ("tolerance", tolerance, 0 < tolerance < 1), ("time", time, 0 < time < math.inf))
 
     def _check_parameters(self) -> None:
         """Raise InvalidError for the first invalid parameter."""
@@ -219,6 +224,8 @@ class Spring:
             [m] and [m/s], of the shape of `times`, bit-identical to ``advance(time, 1, "exact")``.
         """
         t = np.asarray(times, np.float64)
+        for index in np.flatnonzero(~np.isfinite(t))[:1].tolist():
+            invalid("times", float(t.flat[index]), index if t.ndim else None)
         x, v = np.empty(t.shape), np.empty(t.shape)
         spring = Spring(self.stiffness, self.mass, self.damping, self.load)
         for index, time in enumerate(t.flat):
@@ -312,11 +319,19 @@ class Spring:
         Parameters
         ----------
         x_tol : float
-            Largest distance from the rest position [m].
+            Largest distance from the rest position >= 0 [m].
         v_tol : float
-            Largest speed [m/s].
+            Largest speed >= 0 [m/s].
         """
-        return lib.spring_at_rest(self._state, self._params, x_tol, v_tol)
+        rests: bool = lib.spring_at_rest(self._state, self._params, x_tol, v_tol)
+        if not rests:  # it does not for invalid input either
+            self._check_parameters()
+            finite("x", self.x)
+            finite("v", self.v)
+            for field, value in (("x_tol", x_tol), ("v_tol", v_tol)):
+                if not value >= 0:
+                    invalid(field, value)
+        return rests
 
     def settling_time(self, x_tol: float, v_tol: float = math.inf) -> float:
         """Return the time [s] from which on the exact solution stays at rest, or infinity.
@@ -348,7 +363,8 @@ class Spring:
         snapshot : tuple of float
             See `snapshot`.
         """
-        self.x, self.v = snapshot
+        x, v = snapshot
+        self._state = ffi.new("spring_state *", [x, v])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent springs."""

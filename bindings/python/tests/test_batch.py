@@ -3,6 +3,7 @@
 import copy
 import math
 import pickle
+import re
 import threading
 
 import numpy as np
@@ -216,6 +217,20 @@ def test_what_concerns_all_is_named_and_nothing_changes(call, field):
         call(batch)
     assert caught.value.field == field and caught.value.index is None and len(caught.value.failed) == 0
     assert (batch.x == before[0]).all() and (batch.v == before[1]).all()
+
+
+@pytest.mark.parametrize("field, value, call", [
+    ("omega2", 1e300, lambda b, n: Batch(b.x, b.v, n)), ("omega2", 1e-60, lambda b, n: Batch(b.x, b.v, n)),
+    ("accel", -1e-60, lambda b, n: Batch(b.x, b.v, 1.0, None, n)), ("dt", 1e300, lambda b, n: b.advance(n)),
+    ("target", -1e300, lambda b, n: b.follow(n, 0.1)),
+    ("target_velocity", 1e300, lambda b, n: b.follow(0, 0.1, target_velocity=n)),
+])
+def test_a_number_out_of_the_range_of_float32_is_named(field, value, call):
+    batch = example(np.float32)
+    with pytest.raises(springstep.InvalidError, match=re.escape(f"{field} = {value}: out of the range of float32")) as caught:
+        call(batch, value)
+    assert (caught.value.field, caught.value.value) == (field, value)
+    batch.follow(1e-60, 0.1)  # the nearest number is 0
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])

@@ -357,7 +357,7 @@ def test_a_run_that_fails_changes_nothing_and_has_its_frames():
     with pytest.raises(KeyboardInterrupt):
         scene.run(1e-4, 10, progress=stop)
     assert fnv(scene) == before
-    for field, arguments in (("every", (1e-3, 10, 0)), ("steps", (1e-3, 10, -1)), ("steps", (1e-3, -10)), ("dt", (math.nan, 10)),
+    for field, arguments in (("every", (1e-3, 10, 0)), ("every", (1e-3, 10, -1)), ("steps", (1e-3, -10)), ("dt", (math.nan, 10)),
                              ("method", (1e-3, 10, 1, "verlet"))):
         with pytest.raises(springstep.InvalidError) as caught:
             scene.run(*arguments)

@@ -66,8 +66,9 @@ def test_at_is_the_exact_solution(times):
         spring = example()
         spring.advance(time, 1, "exact")
         assert [spring.x, spring.v] == state
-    with pytest.raises(springstep.InvalidError, match="^dt = nan"):
-        spring.at([0, math.nan])
+    with pytest.raises(springstep.InvalidError, match=r"^times\[2\] = nan: ") as caught:
+        spring.at([0, 1, math.nan])
+    assert caught.value.index == 2
 
 
 def test_how_it_should_feel():
@@ -119,9 +120,13 @@ def test_a_wrong_field_is_named(field, value):
     (lambda s: Spring.response(0, 1), "response"), (lambda s: Spring.response(1, -1), "damping_fraction"),
     (lambda s: Spring.bounce(0, 0), "duration"), (lambda s: Spring.bounce(1, -1), "bounce"),
     (lambda s: Spring.settling(0, 1), "time"), (lambda s: Spring.settling(1, 0), "damping_ratio"),
-    (lambda s: Spring.settling(1, 1, 1), "tolerance"), (lambda s: s.follow(math.nan, 0.1), "target"),
+    (lambda s: Spring.settling(1, 1, 1), "tolerance"), (lambda s: Spring.settling(1, 1e-300), "damping_ratio, tolerance, time"),
+    (lambda s: Spring.hertz(1e200, 1), "damping_ratio, hertz"), (lambda s: s.at(math.inf), "times"),
+    (lambda s: s.at_rest(-1, 0), "x_tol"), (lambda s: s.at_rest(0, math.nan), "v_tol"),
+    (lambda s: setattr(s, "mass", -1) or s.at_rest(1, 1), "mass"), (lambda s: setattr(s, "x", math.nan) or s.at_rest(1, 1), "x"),
+    (lambda s: s.follow(math.nan, 0.1), "target"),
     (lambda s: s.follow(1, math.inf), "dt"), (lambda s: s.follow(1, 0.1, math.nan), "target_velocity"),
-    (lambda s: Clock(0), "dt"), (lambda s: Clock(1e-3).tick(-1), "frame_dt"), (lambda s: Clock(1e-3, -1), "steps"),
+    (lambda s: Clock(0), "dt"), (lambda s: Clock(1e-3).tick(-1), "frame_dt"), (lambda s: Clock(1e-3, -1), "max_steps"),
 ])
 def test_a_wrong_argument_is_named(call, field):
     with pytest.raises(springstep.InvalidError) as caught:
@@ -139,6 +144,8 @@ def test_what_fails_changes_nothing():
         spring.advance(1e-3, 1, "verlet")
     with pytest.raises(springstep.UnsupportedError, match="rkn8"):
         spring.advance(1e-3, 1, "rkn8")
+    with pytest.raises(TypeError):
+        spring.restore((1, "a"))
     assert spring.snapshot() == before
 
 
@@ -149,6 +156,9 @@ def test_a_clock():
     assert clock.tick(10 / 128) == (4, 0.5) and clock.dropped == 6 / 128 == clock.skipped
     clock.restore(before)
     assert (clock.pending, clock.dropped, clock.skipped) == (0.5 / 128, 0, 0)
+    with pytest.raises(TypeError):
+        clock.restore((0, "a"))
+    assert clock.snapshot() == before
     clock.dt = 0
     with pytest.raises(springstep.InvalidError, match="^dt, pending = "):
         clock.tick(1 / 128)
