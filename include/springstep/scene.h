@@ -622,9 +622,9 @@ SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, con
 /**
  * Gets the colliders as they are now, with their present positions, axes, velocities and spins.
  *
- * spring_scene_set_colliders() with these colliders changes their motion by rounding errors only, if each spin
- * acceleration is parallel to the spin. Otherwise their later rotation differs. Use the function to draw the colliders of
- * a loaded state, or to change one collider and keep the others.
+ * spring_scene_set_colliders() with these colliders changes the motion of colliders by rounding errors only, if each
+ * spin acceleration is parallel to the spin. Otherwise their later rotation differs. Use the function to draw the
+ * colliders of a loaded state, or to change one collider and keep the others.
  *
  * @param[out]    out    may be NULL: only *count is written
  * @param[in,out] count  size of out; afterwards the number of colliders
