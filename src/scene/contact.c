@@ -1380,13 +1380,13 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
     return count;
 }
 
-vector3 spring_contact_acceleration(const contact_body *b, vector3 x)
+vector3 spring_contact_acceleration(const contact_body *b, vector3 x, vector3 middle, vector3 *mean)
 {
-    const vector3 change = subtract(b->end.velocity, b->start.velocity);
-    if (!b->turns || b->shape == SPRING_CAPSULE)
-        return change;
-    const vector3 y = place_in(&b->start, x), after = cross(b->end.spin, direction_out(&b->end, y));
-    return add(change, subtract(after, cross(b->start.spin, direction_out(&b->start, y))));
+    const vector3 now = frame_velocity(b, &b->start, 0, x);
+    const vector3 carried = place_out(&b->end, place_in(&b->start, x));
+    const vector3 first = frame_velocity(b, &b->start, 0, middle), last = frame_velocity(b, &b->end, 0, middle);
+    *mean = subtract(between(first, last, 0.5), now);
+    return subtract(frame_velocity(b, &b->end, 0, carried), now);
 }
 
 double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel)

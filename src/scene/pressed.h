@@ -94,18 +94,24 @@ static inline bool presses(const scene_step *s, const contact_surface *surface, 
     return load > 0 && (leaving <= rounding || (touching_is_unknown(s) && leaving <= (double)returning * load));
 }
 
-/* [m/s] The change of the velocity of particle i in this step with which it neither leaves the surface nor slides at the
-   end. Contacts that are computed after the kick have impacts. Returns its component along the normal. */
-static inline scalar wanted_change(const scene_step *s, size_t i, const pressing *by, scalar wanted[3])
+/* [m/s] wanted, written: the change of the velocity of particle i in this step with which it neither leaves the surface nor
+   slides at the end. Contacts that are computed after the kick have impacts. slip, written: its velocity relative to the
+   surface in the middle of the step, if its velocity does not change. Returns the component of `wanted` along the normal. */
+static inline scalar wanted_change(const scene_step *s, size_t i, const pressing *by, scalar wanted[3], scalar slip[3])
 {
-    const vector3 x = load_vector(s->whole.x0 + i, s->particles.stride, s->particles.axes);
-    const vector3 of_surface = spring_contact_acceleration(&s->contacts.setting.body[by->collider], x);
-    const double change[3] = {of_surface.x, of_surface.y, of_surface.z};
+    const size_t stride = s->particles.stride;
+    const uint32_t axes = s->particles.axes;
+    const vector3 x = load_vector(s->whole.x0 + i, stride, axes), v = load_vector(s->whole.v0 + i, stride, axes);
+    vector3 mean;
+    const vector3 change = spring_contact_acceleration(&s->contacts.setting.body[by->collider], x,
+                                                       vector_plus(x, (double)s->h / 2, v), &mean);
+    const double by_surface[3] = {change.x, change.y, change.z}, until_middle[3] = {mean.x, mean.y, mean.z};
     scalar leaving = 0, along = 0;
-    for (uint32_t a = 0; a < s->particles.axes; a++)
+    for (uint32_t a = 0; a < axes; a++)
         leaving += by->u[a] * by->normal[a];
-    for (uint32_t a = 0; a < s->particles.axes; a++) {
-        wanted[a] = (scalar)change[a] - by->u[a] + (leaving < 0 ? leaving : 0) * by->normal[a];
+    for (uint32_t a = 0; a < axes; a++) {
+        slip[a] = by->u[a] - (scalar)until_middle[a];
+        wanted[a] = (scalar)by_surface[a] - by->u[a] + (leaving < 0 ? leaving : 0) * by->normal[a];
         along += wanted[a] * by->normal[a];
     }
     return along;
@@ -142,12 +148,13 @@ static inline void begin_pressed(const scene_step *s, pressed_particle *p, size_
     const scalar *const each = scene_read(s->scene, ARRAY_FRICTION);
     *p = (pressed_particle){.particle = (uint32_t)i, .freedom = FREE_IN_PLANE, .collider = by->collider};
     p->coefficient = s->contacts.setting.body[by->collider].friction * (each != NULL ? (double)each[i] : 1);
-    const scalar change = wanted_change(s, i, by, p->wanted);
+    const scalar change = wanted_change(s, i, by, p->wanted, p->slip);
     for (uint32_t a = 0; a < s->particles.axes; a++) {
         p->line[a] = p->outwards[a] = by->normal[a];
         p->given[a] = change / s->h * by->normal[a];
         p->wanted[a] -= change * by->normal[a];
     }
+    free_component(p, s->particles.axes, p->slip);
 }
 
 /* The surfaces of the colliders with these bits that particle i touches at x. Returns their number. */
@@ -171,7 +178,7 @@ SPRING_NOINLINE bool find_pressing_surfaces(const scene_step *s, size_t i, const
     const unsigned surfaces = surfaces_at(s, s->contacts.touched_before[i], i, false, s->whole.x0, surface);
     for (unsigned k = 0; k < surfaces; k++) {
         pressing by = {.holds = false};
-        scalar wanted[3] = {0};
+        scalar wanted[3] = {0}, slip[3] = {0};
         if (!presses(s, &surface[k], i, residual, &by))
             continue;
         held = held || by.holds;
@@ -179,7 +186,7 @@ SPRING_NOINLINE bool find_pressing_surfaces(const scene_step *s, size_t i, const
             begin_pressed(s, p, i, &by);
             continue;
         }
-        add_normal(s, p, by.normal, wanted_change(s, i, &by, wanted));
+        add_normal(s, p, by.normal, wanted_change(s, i, &by, wanted, slip));
         for (uint32_t a = 0; a < s->particles.axes; a++)
             p->outwards[a] += by.normal[a];
     }
@@ -306,12 +313,11 @@ SPRING_NOINLINE void begin_friction(scene_step *s, const pressed_list *pressed, 
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const p = &pressed->list[j];
         const size_t i = p->particle;
-        scalar full[3] = {0}, slip[3] = {0};
+        scalar full[3] = {0};
         double square = 0, speed = 0, limit = 0;
         for (uint32_t a = 0; a < axes; a++) {
             full[a] = residual[a * stride + i];
-            slip[a] = -p->wanted[a];
-            square += (double)(slip[a] * slip[a]);
+            square += (double)(p->wanted[a] * p->wanted[a]);
             speed += fabs((double)s->whole.v0[a * stride + i]);
         }
         const double rounding = 64 * (double)SCALAR_EPSILON * speed;
@@ -331,7 +337,7 @@ SPRING_NOINLINE void begin_friction(scene_step *s, const pressed_list *pressed, 
             for (uint32_t a = 0; a < axes; a++)
                 p->given[a] += p->wanted[a] / s->h;
         } else if (p->coefficient > 0) {
-            slide_against(p, axes, slip, limit);
+            slide_against(p, axes, p->slip, limit);
         }
         set_residual(s, p, full, residual);
     }
@@ -344,7 +350,7 @@ static inline bool correct_friction(const scene_step *s, pressed_particle *p, co
     const size_t stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
     scalar load = 0, given = 0, along = 0, held[3] = {0}, moves[3] = {0};
-    double square = 0;
+    double square = 0, mean_square = 0;
     for (uint32_t a = 0; a < axes; a++) {
         load -= p->removed[a] * p->line[a];
         given += p->given[a] * p->line[a];
@@ -354,9 +360,10 @@ static inline bool correct_friction(const scene_step *s, pressed_particle *p, co
         held[a] = p->removed[a] + load * p->line[a]; /* the velocity that static friction took */
         square += (double)(held[a] * held[a]);
         /* twice the mean velocity along the surface */
-        moves[a] = v1[a * stride + p->particle] - s->whole.v0[a * stride + p->particle] - s->h * given * p->line[a] -
-                   2 * p->wanted[a];
+        moves[a] = v1[a * stride + p->particle] - s->whole.v0[a * stride + p->particle] - s->h * given * p->line[a] +
+                   2 * p->slip[a];
         along += p->against[a] * moves[a];
+        mean_square += (double)(moves[a] * moves[a]);
     }
     if (p->freedom == HELD) {
         if (square <= limit * limit)
@@ -367,19 +374,22 @@ static inline bool correct_friction(const scene_step *s, pressed_particle *p, co
         slide_against(p, axes, held, limit);
         return true;
     }
-    if (p->direction_unknown) {
-        p->direction_unknown = false;
-        slide_against(p, axes, moves, limit);
-        return true;
-    }
-    if (along > 0 && p->friction > 0) { /* it would push the particle */
-        p->direction_unknown = true;
-        p->friction = 0;
+    if (along > 0 && p->friction > 0) { /* it pushes the particle */
+        if (p->reversed)
+            p->most_friction = (double)p->friction / 2;
+        else
+            slide_against(p, axes, moves, limit);
+        p->friction = (scalar)fmin((double)p->friction, p->most_friction);
+        p->reversed = true;
         return true;
     }
     const double friction = fmin(limit, p->most_friction);
-    if (fabs(friction - (double)p->friction) <= friction_tolerance * limit)
+    const double across = mean_square - (double)along * (double)along, least = friction_tolerance * friction_tolerance;
+    const bool turns = 4 * limit < p->most_friction && across > least * mean_square && across < 0.75 * mean_square;
+    if (!turns && fabs(friction - (double)p->friction) <= friction_tolerance * limit)
         return false;
+    for (uint32_t a = 0; a < axes && turns; a++)
+        p->against[a] = -moves[a] / (scalar)spring_sqrt(mean_square);
     p->friction = (scalar)friction;
     return true;
 }

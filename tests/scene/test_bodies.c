@@ -1751,12 +1751,59 @@ static void folds(void)
     }
 }
 
+/* Where a heavily damped block is after 0.8 s [m], which slides sideways on a slope. */
+static double place_on_slope(double dt)
+{
+    const double slope = 0.3, stiffness = 50, mass = 0.01, side = 0.1, damping = 0.5;
+    double x[24], v[24] = {0}, sum = 0;
+    spring_link link[28];
+    spring_scene_def def = {.particles = 8,
+                            .position = x,
+                            .velocity = v,
+                            .mass_all = mass,
+                            .link = link,
+                            .gravity = {0, -gravity, 0},
+                            .colliders = 1};
+    for (uint32_t a = 0; a < 8; a++) {
+        const double along = side * (a & 1), up = side * (a >> 1 & 1);
+        memcpy(&x[3 * a],
+               (double[]){cos(slope) * along - sin(slope) * up, sin(slope) * along + cos(slope) * up, side * (a >> 2)},
+               3 * sizeof *x);
+        v[3 * a + 2] = 1;
+        for (uint32_t b = 0; b < a; b++)
+            link[def.links++] = (spring_link){
+                b,
+                a,
+                hypot(hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1]), x[3 * a + 2] - x[3 * b + 2]),
+                stiffness,
+                damping,
+                0};
+    }
+    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{-sin(slope), cos(slope), 0}}, .friction = 0.1};
+    spring_scene *s = scene_of(&def);
+    set(s, &c, 1);
+    run(s, SPRING_LEAPFROG, dt, (uint64_t)(0.8 / dt + 0.5));
+    spring_scene_get(s, SPRING_POSITION, x, 0, 0, 8);
+    for (int a = 0; a < 8; a++)
+        sum += x[3 * a + 2] / 8;
+    free(s);
+    return sum;
+}
+
+/* Friction turns with the velocity. If it kept the direction that it has at the start of a step, the error would be of
+   first order, 4e-4 m here. */
+static void damped_block_slides_sideways(void)
+{
+    const double fine = place_on_slope(0.0005), coarse = place_on_slope(0.004);
+    CHECK_BELOW(fabs(coarse - fine), 5e-5, "m");
+}
+
 /* A heavy body stands on two feet of a fifteenth of its mass, with damped legs, on a level floor with friction. */
 static void heavy_body_on_feet(void)
 {
-    static const double ratios[] = {1, 3, 10, 30, 100, 300}, steps[] = {0.9, 0.5, 0.25}, friction[] = {0.05, 0.2};
-    for (int k = 0; k < 6 * 3 * 2; k++) {
-        const double foot = 40, body = 600, damping = ratios[k % 6] * 2 * sqrt(4e4 * 300);
+    static const double ratios[] = {0.1, 1, 3, 10, 30, 100, 300}, steps[] = {0.9, 0.5, 0.25}, friction[] = {0.05, 0.2};
+    for (int k = 0; k < 7 * 3 * 2; k++) {
+        const double foot = 40, body = 600, damping = ratios[k % 7] * 2 * sqrt(4e4 * 300);
         const double x[9] = {-0.8, 0.3, 0, 0.8, 0.3, 0, 0.1, 1, 0}, mass[3] = {foot, foot, body};
         const spring_link link[3] = {{0, 1, 1.6, 2e6, 0.03 * sqrt(2 * 2e6 * foot), 0},
                                      {0, 2, 1.1 * hypot(0.9, 0.7), 4e4, damping, 0},
@@ -1769,10 +1816,10 @@ static void heavy_body_on_feet(void)
                                       .gravity = {0, -gravity, 0},
                                       .colliders = 1,
                                       .particle_radius = 0.3};
-        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction[k / 18]};
+        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction[k / 21]};
         spring_scene *s = scene_of(&def);
         set(s, &c, 1);
-        const double dt = steps[k / 6 % 3] * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        const double dt = steps[k / 7 % 3] * spring_scene_stable_step(s, SPRING_LEAPFROG);
         double least = INFINITY, rise = 0, fall = 0;
         for (int i = 0; i * dt < 20; i++) {
             run(s, SPRING_LEAPFROG, dt, 1);
@@ -1783,7 +1830,7 @@ static void heavy_body_on_feet(void)
             rise = fmax(rise, now - least);
         }
         CHECK_BELOW(rise, 0.01 * (fall - least), "energy, in units of the energy lost");
-        CHECK(spring_scene_at_rest(s, 1e-3, 0.1), "comes to rest");
+        CHECK(ratios[k % 7] < 1 || spring_scene_at_rest(s, 1e-3, 0.1), "comes to rest, if it does not swing");
         free(s);
     }
 }
@@ -1938,6 +1985,7 @@ static const test tests[] = {
     {"damped body on a platform", damped_body_on_platform},
     {"damped body in a lift", damped_body_in_a_lift},
     {"heavy body on feet", heavy_body_on_feet},
+    {"damped block slides sideways", damped_block_slides_sideways},
     {"floor of boxes", floor_of_boxes},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
