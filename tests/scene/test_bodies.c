@@ -1801,9 +1801,9 @@ static void damped_block_slides_sideways(void)
 /* A heavy body stands on two feet of a fifteenth of its mass, with damped legs, on a level floor with friction. */
 static void heavy_body_on_feet(void)
 {
-    static const double ratios[] = {0.1, 1, 3, 10, 30, 100, 300}, steps[] = {0.9, 0.5, 0.25}, friction[] = {0.05, 0.2};
-    for (int k = 0; k < 7 * 3 * 2; k++) {
-        const double foot = 40, body = 600, damping = ratios[k % 7] * 2 * sqrt(4e4 * 300);
+    static const double ratios[] = {1, 3, 10, 30, 100, 300}, steps[] = {0.9, 0.5, 0.25}, friction[] = {0.05, 0.2};
+    for (int k = 0; k < 6 * 3 * 2; k++) {
+        const double foot = 40, body = 600, damping = ratios[k % 6] * 2 * sqrt(4e4 * 300);
         const double x[9] = {-0.8, 0.3, 0, 0.8, 0.3, 0, 0.1, 1, 0}, mass[3] = {foot, foot, body};
         const spring_link link[3] = {{0, 1, 1.6, 2e6, 0.03 * sqrt(2 * 2e6 * foot), 0},
                                      {0, 2, 1.1 * hypot(0.9, 0.7), 4e4, damping, 0},
@@ -1816,10 +1816,10 @@ static void heavy_body_on_feet(void)
                                       .gravity = {0, -gravity, 0},
                                       .colliders = 1,
                                       .particle_radius = 0.3};
-        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction[k / 21]};
+        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction[k / 18]};
         spring_scene *s = scene_of(&def);
         set(s, &c, 1);
-        const double dt = steps[k / 7 % 3] * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        const double dt = steps[k / 6 % 3] * spring_scene_stable_step(s, SPRING_LEAPFROG);
         double least = INFINITY, rise = 0, fall = 0;
         for (int i = 0; i * dt < 20; i++) {
             run(s, SPRING_LEAPFROG, dt, 1);
@@ -1830,7 +1830,7 @@ static void heavy_body_on_feet(void)
             rise = fmax(rise, now - least);
         }
         CHECK_BELOW(rise, 0.01 * (fall - least), "energy, in units of the energy lost");
-        CHECK(ratios[k % 7] < 1 || spring_scene_at_rest(s, 1e-3, 0.1), "comes to rest, if it does not swing");
+        CHECK(spring_scene_at_rest(s, 1e-3, 0.1), "comes to rest");
         free(s);
     }
 }
