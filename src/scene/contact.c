@@ -1380,7 +1380,7 @@ unsigned spring_contact_surfaces(const contact_body *body, unsigned bodies, cons
     return count;
 }
 
-vector3 spring_contact_acceleration(const contact_body *b, vector3 x, vector3 middle, vector3 *mean)
+vector3 spring_contact_velocity_change(const contact_body *b, vector3 x, vector3 middle, vector3 *mean)
 {
     const vector3 now = frame_velocity(b, &b->start, 0, x);
     const vector3 carried = place_out(&b->end, place_in(&b->start, x));

@@ -137,7 +137,7 @@ SPRING_INTERNAL unsigned spring_contact_surfaces(const contact_body *body, unsig
 
 /* [m/s] The change of the velocity of a point of the frame, which is at x at the start of the drift, in the drift. mean,
    written: the velocity of the frame at `middle` in the middle of the drift, minus that at x at the start */
-SPRING_INTERNAL vector3 spring_contact_acceleration(const contact_body *b, vector3 x, vector3 middle, vector3 *mean);
+SPRING_INTERNAL vector3 spring_contact_velocity_change(const contact_body *b, vector3 x, vector3 middle, vector3 *mean);
 
 /* The acceleration that is left of `accel` by the normal forces and the static friction of the surfaces. */
 SPRING_INTERNAL double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel);

@@ -103,8 +103,8 @@ static inline scalar wanted_change(const scene_step *s, size_t i, const pressing
     const uint32_t axes = s->particles.axes;
     const vector3 x = load_vector(s->whole.x0 + i, stride, axes), v = load_vector(s->whole.v0 + i, stride, axes);
     vector3 mean;
-    const vector3 change = spring_contact_acceleration(&s->contacts.setting.body[by->collider], x,
-                                                       vector_plus(x, (double)s->h / 2, v), &mean);
+    const vector3 change = spring_contact_velocity_change(&s->contacts.setting.body[by->collider], x,
+                                                          vector_plus(x, (double)s->h / 2, v), &mean);
     const double by_surface[3] = {change.x, change.y, change.z}, until_middle[3] = {mean.x, mean.y, mean.z};
     scalar leaving = 0, along = 0;
     for (uint32_t a = 0; a < axes; a++)
