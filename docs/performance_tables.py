@@ -9,8 +9,10 @@ usage: performance_tables.py --measure BUILD   measure with the programs of a bu
 import math
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 DOCS = pathlib.Path(__file__).resolve().parent
 SCENES = {'rope': 'rope', 'cloth': 'cloth, 25 × 25', 'jelly': 'soft body, 8 × 8 × 8'}
@@ -29,12 +31,15 @@ CAPE, SHEET = 20 * 30, 35 * 35  # particles of the cape of spring-work, and of t
 TETHERS = {'none': 'none', 'all': 'all particles', 'rows': 'every seventh row'}
 
 
+data = DOCS / 'data'
+
+
 def file(name):
-    return DOCS / 'data' / f'{name}.tsv'
+    return data / f'{name}.tsv'
 
 
 def measure(build):
-    """Write the data anew."""
+    """Write the data anew, to the folder data."""
     for name, (program, *options) in COMMANDS.items():
         others = [word for option, other in OTHER_FILES.get(name, {}).items() for word in (option, file(other))]
         subprocess.run([pathlib.Path(build) / 'tools' / program, *options, *others, '-o', file(name)], check=True)
@@ -150,6 +155,8 @@ def long_runs():
     comments, rows = read('stiff-long')
     runs = {solver: sorted((row for row in rows if row['solver'] == solver), key=lambda row: float(row['frame_s']))
             for solver in [*LONG, 'rkn8']}
+    if missing := [solver for solver, run in runs.items() if not run]:
+        raise SystemExit(f'spring-work has no long runs of {", ".join(missing)}: use the SUNDIALS that tools/bench/optimised builds')
     frame = float(runs['leapfrog'][0]['frame_s'])
     chosen = [(title, min(runs[solver], key=lambda row: abs(math.log(float(row['frame_s']) / frame)))) for solver, title in LONG.items()]
     chosen.append(('RKN8, an accurate run', runs['rkn8'][-1]))
@@ -170,21 +177,35 @@ PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles, D
          DOCS / 'stiffness.md': long_runs}
 
 
-def main():
-    option, *build = sys.argv[1:] or ['']
-    if (option, len(build)) not in (('--measure', 1), ('--check', 0)):
-        raise SystemExit(__doc__)
-    if build:
-        measure(build[0])
+def fill():
+    """Return the pages and their texts, with the tables of the data."""
+    texts = {}
     for page, tables in PAGES.items():
         text = page.read_text()
         filled, places = re.subn(r'(<!-- performance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
         if places != 1:
             raise SystemExit(f'{page} has no place for the tables')
-        if build:
-            page.write_text(filled)
-        elif filled != text:
-            raise SystemExit(f'the tables of {page} are not those of docs/data: docs/performance_tables.py --measure fills them')
+        texts[page] = filled
+    return texts
+
+
+def main():
+    global data
+    option, *build = sys.argv[1:] or ['']
+    if (option, len(build)) not in (('--measure', 1), ('--check', 0)):
+        raise SystemExit(__doc__)
+    if not build:
+        for page, text in fill().items():
+            if page.read_text() != text:
+                raise SystemExit(f'the tables of {page} are not those of docs/data: docs/performance_tables.py --measure fills them')
+        return
+    with tempfile.TemporaryDirectory() as folder: # so that an error leaves the old data and tables as they are
+        old, data = data, pathlib.Path(folder)
+        measure(build[0])
+        texts = fill()
+        shutil.copytree(data, old, dirs_exist_ok=True)
+    for page, text in texts.items():
+        page.write_text(text)
 
 
 main()
