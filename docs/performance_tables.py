@@ -7,6 +7,7 @@ usage: performance_tables.py --measure BUILD   measure with the programs of a bu
 """
 
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -25,6 +26,7 @@ COMMANDS = {  # the longer ones first, so that the processor runs at its full cl
     'contacts': ['spring-bench', '--part', 'scene', '--kernel', 'leapfrog_sheet_16_on_a_plane'],
     **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
 }
+WORK = ['cloth', 'long-cloth', 'water', 'damped-cloth', 'stiff-rope']  # stiff-cloth is measured with 'stiff'
 OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces', '--long': 'stiff-long'}, 'cape': {'--table': 'cape-equal'}}
 SOLVERS = {'leapfrog': 'leapfrog', 'xpbd-mesh': 'XPBD', 'xpbd-sheet': 'XPBD for sheets only'}
 CAPE, SHEET = 20 * 30, 35 * 35  # particles of the cape of spring-work, and of the sheet of spring-bench
@@ -43,6 +45,9 @@ def measure(build):
     for name, (program, *options) in COMMANDS.items():
         others = [word for option, other in OTHER_FILES.get(name, {}).items() for word in (option, file(other))]
         subprocess.run([pathlib.Path(build) / 'tools' / program, *options, *others, '-o', file(name)], check=True)
+    for problem in WORK:
+        subprocess.run([pathlib.Path(build) / 'tools' / 'spring-work', '--problem', problem, '--table', file(f'{problem}-table'),
+                        '-o', os.devnull], check=True)
 
 
 def read(name):
@@ -173,8 +178,47 @@ def long_runs():
     ])
 
 
-PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles, DOCS / 'performance.md': cape,
-         DOCS / 'stiffness.md': long_runs}
+ERRORS = [f'1e-{digits}' for digits in range(1, 11)]
+NAMES = {'leapfrog': 'leapfrog', 'rk4': 'RK4', 'rkn8': 'RKN8', 'srkn6': 'SRKN6', 'none': '–'}
+
+
+def cheapest():
+    """Return the table of docs/methods.md of the cheapest methods."""
+    lines = []
+    for problem in [*WORK, 'stiff']:
+        comments, rows = read(f'{problem}-table')
+        (duration,) = {f"{float(row['steps']) * float(row['dt_s']):.2g} s" for row in rows if row['solver'] != 'none'}
+        cells = []
+        for error in ERRORS:
+            row = row_where(rows, error=error)
+            ratio = two_digits(row['ratio']) if row['ratio'] != 'nan' else '–'
+            cells.append(f"{NAMES[row['solver']]}, {ratio}" if row['solver'] != 'none' else '–')
+        lines.append((rows[0]['problem'], duration, *cells))
+    return '\n\n'.join([
+        table(('problem (`spring-work`)', 'time', *ERRORS), ['---'] * (2 + len(ERRORS)), *lines),
+        f'Measured on one core of an {comments["processor"]}.'.replace('(R)', ''),
+    ])
+
+
+STIFF = {'leapfrog': 'leapfrog', 'bdf2-cg': 'BDF2-CG', 'cvode-bdf': 'CVODE, BDF', 'cvode-adams': 'CVODE, Adams', 'xpbd': 'XPBD'}
+
+
+def stiff_solvers():
+    """Return the table of docs/methods.md of solvers for the stiff cloth."""
+    comments, rows = read('stiff')
+    lines = []
+    for solver, title in STIFF.items():
+        times = [[float(row['time_s']) for row in rows if row['solver'] == solver and float(row['error']) <= float(error)]
+                 for error in ERRORS[:5]]
+        lines.append((title, *(f'{two_digits(min(time) * 1e3)} ms' if time else '–' for time in times)))
+    return '\n\n'.join([
+        table(('error (`spring-work`)', *ERRORS[:5]), ['---'] * 6, *lines),
+        f'Measured on one core of an {comments["processor"]}.'.replace('(R)', ''),
+    ])
+
+
+PAGES = {DOCS.parent / 'README.md': [performance], DOCS / 'games.md': [particles], DOCS / 'performance.md': [cape],
+         DOCS / 'stiffness.md': [long_runs], DOCS / 'methods.md': [cheapest, stiff_solvers]}
 
 
 def fill():
@@ -182,10 +226,11 @@ def fill():
     texts = {}
     for page, tables in PAGES.items():
         text = page.read_text()
-        filled, places = re.subn(r'(<!-- performance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
-        if places != 1:
-            raise SystemExit(f'{page} has no place for the tables')
-        texts[page] = filled
+        place = re.compile(r'(<!-- performance -->\n\n).*?(\n\n<!-- end -->)', re.S)
+        if len(place.findall(text)) != len(tables):
+            raise SystemExit(f'{page} does not have {len(tables)} places for tables')
+        next_table = iter(tables)
+        texts[page] = place.sub(lambda m: m[1] + next(next_table)() + m[2], text)
     return texts
 
 
