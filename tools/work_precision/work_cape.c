@@ -435,7 +435,7 @@ void cape_write(cli_table *table, cli_table *equal, bool quick)
     static const int steps[] = {10, 14, 20, 28, 40}, substeps[] = {5, 7, 10, 14, 20}, quick_steps[] = {10, 30},
                      quick_substeps[] = {5, 20};
     static const double fractions[] = {0.25, 0.5, 0.7, 0.9, 1, 1.1, 1.3}, dampings[] = {0.005, 0.02};
-    const double time = quick ? 20 : 60; /* [s] */
+    const double time = quick ? 16 : 60; /* [s] */
     const int runs = quick ? 2 : 5, total = (int)(sizeof settings / sizeof settings[0]);
     for (int i = 0; i < total; i++) {
         cape_setting c = settings[i];
