@@ -22,7 +22,8 @@
  *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
  *              is lambda n, with the lambda for which the path ends on the surface. Late (in the second half of the step,
  *              at a second contact of the step, or after item 1): the path is projected to the tangent plane, and w
- *              loses its component into the collider.
+ *              loses its component into the collider. Where another body continues the face, as on a floor of boxes,
+ *              the path ends on the tangent plane.
  *           5. After a contact, the other colliders are tested with the changed path. A particle that is still inside at
  *              the end (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
  *              A pass moves it by at most the length of its path and the largest depth, because the tangent planes of
@@ -47,6 +48,7 @@
 #include "../simd/compiler.h"
 #include "../spring/propagator.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "../simd/size_begin.h"
@@ -75,6 +77,9 @@ static const double same_face = 0.9;
 
 /* Contacts of a custom body whose gaps differ by this number of slops are at the same place. */
 static const double same_place = 1e3;
+
+/* The cosine between normals of faces that are one face. */
+static const double same_plane = 1 - 1e-9;
 
 /* The cosine between the normals at the start and at the end of a path that presses; a smaller one counts as this. */
 static const double least_cosine = 0.1;
@@ -531,6 +536,13 @@ SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p
     return slop_at(s, p->x0, b->rounding_scale, p->radius);
 }
 
+/* [m] Faces side by side whose heights differ by less are one face, in double precision too: coordinates may have been
+   computed in single precision. */
+SPRING_INLINE double flush_of(const contact_particle *p, const contact_body *b)
+{
+    return 8 * (double)FLT_EPSILON * (size_sum(p->x0) + b->rounding_scale + p->radius);
+}
+
 /* [m] Contacts whose gaps differ by less act together in a stop at x. It depends on the pose and not on the step, so
    that the end of a step has the result of the start of the next. */
 static double gap_tolerance(const contact_setting *s, const contact_particle *p, const contact_body *b, bool at_end,
@@ -687,6 +699,7 @@ typedef struct meeting {
     double time_left;   /* [s] of the step, after the contact */
     vector3 velocity;   /* [m/s] of the surface */
     bool walks;         /* the way is long compared with a custom body's thickness */
+    bool goes_on;       /* another body continues the face */
 } meeting;
 
 enum { NO_CONTACT = 0, CONTACT = 1, CLEAR = 2 }; /* CLEAR: the path is known to end outside */
@@ -782,11 +795,27 @@ static bool find_custom_impact(contact_particle *p, meeting *m)
     return false;
 }
 
+/* Whether a chord stays on the outer side of the plane of a face of a box. Along the face, Newton's method would take
+   rounding errors for an impact. flush: [m] how deep it may start. If it starts away from the box, it may also go so much
+   deeper. */
+static bool passes_face(const contact_body *b, const meeting *m, double radius, double flush)
+{
+    const double down = m->at.gap > m->slop ? flush : m->slop;
+    for (int a = 0; a < 3 && b->shape == SPRING_BOX; a++) {
+        const double from = component(m->start, a), way = component(m->way, a), side = from < 0 ? -1 : 1;
+        const double above = side * from - b->half[a] - radius;
+        if (above >= -flush && side * way >= -fmax(above, 0) - down)
+            return true;
+    }
+    return false;
+}
+
 /* Items 1 and 2. Returns whether there is a contact. */
 static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 {
     const contact_body *const b = m->b;
     m->slop = slop_of(s, p, b);
+    m->goes_on = false;
     m->start = place_in(&b->start, p->x0);
     m->way = subtract(end_in_frame(b, p), m->start);
     m->fraction = 0;
@@ -794,7 +823,10 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->start_depth = m->at.gap < -m->slop ? -m->at.gap : 0;
     near_point there;
     if (m->again && m->start_depth > 0 && gap_at_end(p, b, &there) >= -m->slop)
-        return false;                             /* an earlier contact of this step has moved it out */
+        return false; /* an earlier contact of this step has moved it out */
+    if ((m->again || m->at.gap > m->slop) &&
+        passes_face(b, m, b->radius + p->radius, m->again ? flush_of(p, b) : m->slop))
+        return false;
     m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
     const bool custom = is_custom(b->shape), enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
     if (custom && m->start_depth == 0 && !enters ? !find_custom_impact(p, m) : !custom && !find_convex_impact(p, m))
@@ -867,8 +899,8 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
 SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x, bool last_pass, double *lambda)
 {
     const contact_body *const b = m->b;
-    if (b->shape == SPRING_PLANE && !b->turns)
-        return true;
+    if (m->goes_on || (b->shape == SPRING_PLANE && !b->turns))
+        return !b->turns;
     const double duration = fabs(m->time_left);
     const bool custom = is_custom(b->shape);
     const int most = m->walks ? 0 : custom ? custom_iterations : last_pass ? surface_iterations : 1;
@@ -1319,6 +1351,38 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
     spring_contact_stop(s, p, inside, true, add(p->x0, p->d), &p->w);
 }
 
+/* The index of a body that continues the face on which a path is pressed, as on a floor of boxes, and on which the path
+   ends; or the number of bodies. Otherwise the particle would fall from the start of the step, and hit the edge of that
+   body. */
+static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_t nearby, const meeting *m)
+{
+    if (m->again || m->start_depth > 0 || m->fraction > 0.5 || is_custom(m->b->shape))
+        return s->count;
+    const double inward = inward_at(m, end_in_frame(m->b, p));
+    const vector3 end = add_scaled(add(p->x0, p->d), -inward, m->n_end);
+    near_point at;
+    find_nearest(p, m->b, 1, place_in(&m->b->end, end), &at);
+    if (!(inward < 0) || !(at.gap > 1e-6 * flush_of(p, m->b)))
+        return s->count;
+    for (unsigned i = 0; i < s->count; i++) {
+        const contact_body *const b = &s->body[i];
+        if ((nearby >> i & 1) == 0 || i == m->index || is_custom(b->shape))
+            continue;
+        find_nearest(p, b, 1, place_in(&b->end, end), &at);
+        if (fabs(at.gap) <= flush_of(p, b) && inner(direction_out(&b->end, at.normal), m->n_end) > same_plane)
+            return i;
+    }
+    return s->count;
+}
+
+/* At the start of the step, a face comes before the edge of a box: pressed on the face, a path may pass the edge. */
+static bool is_before(const meeting *m, const meeting *other)
+{
+    if (m->fraction != other->fraction || m->fraction != 0 || other->b->shape != SPRING_BOX)
+        return m->fraction < other->fraction;
+    return size_sum(m->at.normal) == 1 && size_sum(other->at.normal) > 1;
+}
+
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
     uint32_t nearby = p->nearby == UINT32_MAX ? near_path(s, p) : p->nearby, clear = 0, last = 0;
@@ -1335,7 +1399,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
             next->again = p->touched != 0;
             if (!meet(s, p, next))
                 clear |= s->body[i].degenerate ? 0 : bit;
-            else if (first == NULL || next->fraction < first->fraction) {
+            else if (first == NULL || is_before(next, first)) {
                 first = next;
                 next = first == &each[0] ? &each[1] : &each[0];
             }
@@ -1343,8 +1407,13 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         if (first == NULL)
             break;
         last = UINT32_C(1) << first->index;
-        p->touched |= last;
+        const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;
+        first->goes_on = next_one < s->count;
         clear = (collide(s, p, first) & CLEAR) != 0 ? last : 0;
+        near_point there;
+        const bool beyond =
+            first->goes_on && gap_at_end(p, first->b, &there) > gap_at_end(p, &s->body[next_one], &there);
+        p->touched |= beyond ? UINT32_C(1) << next_one : last;
         nearby = near_path(s, p) | p->touched;
     }
     leave(s, p, nearby, clear);
