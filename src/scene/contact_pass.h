@@ -42,6 +42,11 @@ static inline vector3 vector_minus(vector3 a, vector3 b)
     return vector_plus(a, -1, b);
 }
 
+static inline double vector_dot(vector3 a, vector3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
 static inline vector3 vector_times(double s, vector3 a)
 {
     return (vector3){s * a.x, s * a.y, s * a.z};

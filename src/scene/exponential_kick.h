@@ -52,9 +52,11 @@
 
 /* ---------------------------------------------------------------------------------------------------------- bounces */
 
-/* Reduces the velocities with which particles leave colliders with restitution. The kick before this impact has not
-   damped them, and the next would be too late: a body would bounce in every step, and gain elastic energy. */
-SPRING_NOINLINE void damp_bounces(const scene_step *s)
+/* Reduces the velocities with which particles leave colliders with restitution, by at most the impulse of the impact. The
+   kick before this impact has not damped them, and the next would be too late: a body would bounce in every step, and gain
+   elastic energy. Friction that exceeds the limit of the smaller impulse is given back. before: velocities before the
+   contacts */
+SPRING_NOINLINE void damp_bounces(const scene_step *s, const scalar *before)
 {
     const scalar *const remaining = scene_read(s->scene, ARRAY_SUMS);
     const size_t stride = s->scene->layout.stride;
@@ -68,16 +70,16 @@ SPRING_NOINLINE void damp_bounces(const scene_step *s)
             const unsigned surfaces = surfaces_at(s, bit, i, true, s->whole.x, surface);
             for (unsigned j = 0; j < surfaces; j++) {
                 const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
-                              u = vector_minus(v, surface[j].velocity);
-                const double leaving = u.x * n.x + u.y * n.y + u.z * n.z;
-                const double removed = (1 - (double)remaining[i]) * leaving;
-                if (!(leaving > 0))
+                              u = vector_minus(v, surface[j].velocity),
+                              impact = vector_minus(v, load_vector(before + i, stride, axes));
+                const double leaving = vector_dot(u, n), push = vector_dot(impact, n);
+                const double removed = fmin((1 - (double)remaining[i]) * leaving, push);
+                if (!(removed > 0))
                     continue;
-                /* the friction of a sliding particle decreases with the load */
-                const vector3 sliding = vector_plus(u, -leaving, n);
-                const double speed = spring_sqrt(sliding.x * sliding.x + sliding.y * sliding.y + sliding.z * sliding.z);
-                const double returned = speed > 0 ? surface[j].friction * removed / speed : 0;
-                const vector3 change = vector_plus(vector_times(removed, n), -returned, sliding);
+                const vector3 friction = vector_plus(impact, -push, n);
+                const double size = spring_sqrt(vector_dot(friction, friction));
+                const double excess = size - surface[j].friction * (push - removed);
+                const vector3 change = vector_plus(vector_times(removed, n), excess > 0 ? excess / size : 0, friction);
                 store_vector(s->whole.v + i, stride, axes, vector_plus(v, -1, change));
                 record_change(s, i, k, s->whole.x, change);
             }
@@ -216,7 +218,7 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     end.contacts = WHOLE_STEP_CONTACTS;
     if (!move(s, kernels->drift_kick_drift, &end))
         return failed;
-    damp_bounces(s);
+    damp_bounces(s, v1);
     return (scene_outcome){.finite = true};
 }
 

@@ -64,11 +64,20 @@ static inline bool touching_is_unknown(const scene_step *s)
     return s->contacts.setting.count > 0 && elapsed_at(s, 0) == 0;
 }
 
+/* Whether particles that leave a collider may return within half of the step and press it: after colliders were set, since
+   their pose may differ a little from the last one, and after bounces. */
+static inline bool may_return(const scene_step *s)
+{
+    bool may = touching_is_unknown(s);
+    for (unsigned k = 0; k < s->contacts.setting.count; k++)
+        may = may || s->contacts.setting.body[k].restitution > 0;
+    return may;
+}
+
 /* Whether the surface of a collider that particle i touches presses it: its residual points into the collider, and it does
-   not leave. After colliders were set, the new pose may differ from the last one by a little, and particles that return
-   within half of the step press, too. */
+   not leave, or returns. It returns only if `alone`: several surfaces would multiply its velocity. */
 static inline bool presses(const scene_step *s, const contact_surface *surface, size_t i, const scalar *residual,
-                           pressing *p)
+                           bool alone, pressing *p)
 {
     const size_t stride = s->scene->layout.stride;
     const double n[3] = {surface->normal.x, surface->normal.y, surface->normal.z};
@@ -91,7 +100,7 @@ static inline bool presses(const scene_step *s, const contact_surface *surface, 
     const double rounding = 64 * (double)SCALAR_EPSILON * speed, limit = surface->friction * load;
     p->collider = surface->index;
     p->holds = slip <= rounding * rounding && pull <= limit * limit;
-    return load > 0 && (leaving <= rounding || (touching_is_unknown(s) && leaving <= (double)returning * load));
+    return load > 0 && (leaving <= rounding || (alone && may_return(s) && leaving <= (double)returning * load));
 }
 
 /* [m/s] wanted, written: the change of the velocity of particle i in this step with which it neither leaves the surface nor
@@ -179,7 +188,7 @@ SPRING_NOINLINE bool find_pressing_surfaces(const scene_step *s, size_t i, const
     for (unsigned k = 0; k < surfaces; k++) {
         pressing by = {.holds = false};
         scalar wanted[3] = {0}, slip[3] = {0};
-        if (!presses(s, &surface[k], i, residual, &by))
+        if (!presses(s, &surface[k], i, residual, count == 0, &by))
             continue;
         held = held || by.holds;
         if (count++ == 0) {
@@ -237,7 +246,7 @@ SPRING_NOINLINE void find_pressed_from(const scene_step *s, const scene_motion *
         return;
     r.change = vector[0];
     r.place = m->x0 + from;
-    r.returning = unknown ? returning : 0;
+    r.returning = may_return(s) ? returning : 0;
     s->kernels->common->find_pressing(&r);
     for (uint32_t l = 0; l < r.listed; l++) {
         const size_t k = r.list[l];
@@ -267,6 +276,15 @@ static inline double kick_weight(const scene_step *s, size_t i)
 {
     const double inverse_mass = inverse_mass_at(s->scene, i), q = (double)(s->h * s->particles.drag) * inverse_mass;
     return inverse_mass / (1 + q * (0.5 + q / (12 + 2 * q)));
+}
+
+/* Evaluates the damping forces in the residual. x: positions of the kick */
+static inline void evaluate_damping(scene_step *s, const scalar *x)
+{
+    scene_links links = *s->links;
+    links.terms = DAMPING_TERM;
+    links.turning_weight = (scalar)-0.5;
+    evaluate_links(s->kernels, &links, x, s->whole.v0, &s->forces);
 }
 
 /* Replaces the residual of a particle, without its colliders, by its free component, friction and the given acceleration. */
@@ -306,10 +324,7 @@ SPRING_NOINLINE void begin_friction(scene_step *s, const pressed_list *pressed, 
 {
     const size_t stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
-    scene_links links = *s->links;
     bool known = false; /* the damping forces */
-    links.terms = DAMPING_TERM;
-    links.turning_weight = (scalar)-0.5; /* as in the residual */
     for (size_t j = 0; j < pressed->count; j++) {
         pressed_particle *const p = &pressed->list[j];
         const size_t i = p->particle;
@@ -324,7 +339,7 @@ SPRING_NOINLINE void begin_friction(scene_step *s, const pressed_list *pressed, 
         bool holds = p->coefficient > 0 && square <= rounding * rounding;
         if (p->coefficient > 0 && !holds) {
             if (!known)
-                evaluate_links(s->kernels, &links, x, s->whole.v0, &s->forces);
+                evaluate_damping(s, x);
             known = true;
             const scalar weight = (scalar)kick_weight(s, i);
             for (uint32_t a = 0; a < axes; a++)
@@ -415,6 +430,19 @@ SPRING_NOINLINE bool change_friction(const scene_step *s, const pressed_list *pr
 
 /* ---------------------------------------------------------------------------------------------------- around the kick */
 
+/* load, written: the residual without damping, which at v0 may be many times larger than its mean. there, written: where
+   it takes the particles in half of the step. x: positions of the kick */
+SPRING_NOINLINE void find_loads(scene_step *s, const scalar *x, const scalar *residual, scalar *load, scalar *there)
+{
+    evaluate_damping(s, x);
+    for (uint32_t a = 0; a < s->particles.axes; a++)
+        for (size_t i = 0; i < s->particles.count; i++) {
+            const size_t j = a * s->particles.stride + i;
+            load[j] = residual[j] - (scalar)kick_weight(s, i) * s->forces.force[j];
+            there[j] = s->whole.x0[j] + s->h * s->h / 8 * load[j];
+        }
+}
+
 /* Finds the pressed particles, and takes their loads out of the residual. x: positions of the kick */
 static inline pressed_list find_pressed(scene_step *s, const scalar *x, scalar *residual)
 {
@@ -422,14 +450,13 @@ static inline pressed_list find_pressed(scene_step *s, const scalar *x, scalar *
     scene_motion start = s->whole;
     start.v = residual;
     start.force = s->forces.force;
-    if (touching_is_unknown(s)) { /* the way that the load takes a particle in half of a step */
+    if (may_return(s)) {
+        find_loads(s, x, residual, kick_storage(s, 1), kick_storage(s, 2));
+        start.v = kick_storage(s, 1);
         start.x = kick_storage(s, 2);
-        scene_motion way = start;
-        way.v0 = residual;
-        way.drift = s->h * s->h / 8;
-        move(s, s->kernels->common->drift, &way);
-        s->contacts.touched_before = s->contacts.touched;
     }
+    if (touching_is_unknown(s))
+        s->contacts.touched_before = s->contacts.touched;
     for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i += contact_chunk)
         find_pressed_from(s, &start, i, &found);
     if (found.count > 0)

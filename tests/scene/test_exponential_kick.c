@@ -962,6 +962,36 @@ static void without_direction(void)
     free(s);
 }
 
+/* A link and a weighted link that are far shorter than their rest length push their ends apart. */
+static void very_short_links(void)
+{
+    const double length = sizeof(scalar) == sizeof(float) ? 1e-15 : 1e-120;
+    const double x[8] = {0, 0, length, 0, length, length, 0, length};
+    const spring_link link = {0, 1, 0.1, 10, 100, 0};
+    const spring_weighted_link weighted = {
+        .particle = {2, 3}, .weight = {-1, 1}, .rest = 0.1, .stiffness = 10, .damping = 100};
+    const spring_scene_def def = {.axes = 2,
+                                  .particles = 4,
+                                  .links = 1,
+                                  .position = x,
+                                  .mass_all = 0.7,
+                                  .link = &link,
+                                  .weighted_links = 1,
+                                  .weighted_link = &weighted};
+    for (int k = 0; k < kernel_count; k++) {
+        if (kernels_of(k) == NULL)
+            continue;
+        spring_scene *s = scene_of(&def);
+        double now[8];
+        CHECK(spring_scene_advance_with(kernels_of(k), s, SPRING_LEAPFROG, 0.02, 1) == SPRING_OK,
+              "all forces are finite");
+        spring_scene_get(s, SPRING_VELOCITY, now, 0, 0, 4);
+        CHECK(now[2] > 0 && now[0] == -now[2], "the ends move apart");
+        CHECK_CLOSE(now[4], now[2], 16 * EPS, "both links alike");
+        free(s);
+    }
+}
+
 /* Adds a force that is not finite in the call that counts down to 0. */
 static void bad_in_call(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
                         scalar *const force[3])
@@ -1004,6 +1034,7 @@ int main(void)
         {"rests on a plane that is set", rests_on_a_plane_that_is_set},
         {"rests with friction at its limit", rests_with_friction_at_its_limit},
         {"is held as if pinned", is_held_as_if_pinned},
+        {"very short links", very_short_links},
         {"slides down a slope", slides_down_a_slope},
         {"lands with friction", lands_with_friction},
         {"stops by friction", stops_by_friction},
