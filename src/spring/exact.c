@@ -12,7 +12,8 @@ spring_state spring_exact(spring_state s, const spring_params *p, double t)
 {
     const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, p->mass);
     const double a = p->load / p->mass;
-    const exact_coefficients c = exact_coefficients_of(r.omega2, r.b, r.rest, t, a != 0);
+    const spring_propagator propagator = spring_propagator_of(&r, t, a != 0);
+    const exact_coefficients c = exact_prepare(&propagator);
     exact_step(&s.x, &s.v, a, &c, a != 0);
     return s;
 }
