@@ -18,6 +18,8 @@
 
 #include <springstep/scene.h>
 
+#include "../simd/size_begin.h"
+
 static const uint32_t none = UINT32_MAX; /* no number, no particle */
 
 /* Neighbours of particle v: neighbour[start[v]] to neighbour[start[v + 1] - 1]. */
@@ -234,3 +236,5 @@ spring_status spring_links_renumber(size_t particles, size_t links, spring_link 
     permute(links, link, from);
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"
