@@ -535,6 +535,13 @@ SPRING_CONTACT_INLINE real3 pick3(const picked_particles *l, const scalar *from,
     return (real3){to[0], to[1], to[2]};
 }
 
+/* One copy, for functions that take little time. */
+SPRING_NOINLINE real3 pick3_rarely(const picked_particles *l, const scalar *from, size_t stride, size_t step,
+                                   uint32_t axes)
+{
+    return pick3(l, from, stride, step, axes);
+}
+
 /* The radius, and the factor of friction. */
 SPRING_CONTACT_INLINE void pick_surface(const candidate_chunk *r, const picked_particles *l, real *radius,
                                         real *friction)
@@ -689,8 +696,8 @@ static lane_bits rest_in_whole_step(candidate_chunk *r, const picked_particles *
     const scene_motion *const m = r->step;
     resting_lanes q;
     pick_resting(r, l, c, &q);
-    const real3 v_free = pick3(l, m->v + r->first, p->stride, 1, p->axes);
-    const real3 x_free = pick3(l, m->x + r->first, p->stride, 1, p->axes);
+    const real3 v_free = pick3_rarely(l, m->v + r->first, p->stride, 1, p->axes);
+    const real3 x_free = pick3_rarely(l, m->x + r->first, p->stride, 1, p->axes);
     q.d = minus3(x_free, q.x0);
     q.w = times3(splat(1 / (scalar)r->setting->h), q.d);
     lane_mask fine = rest_lanes(r, l, c, &q);
@@ -732,8 +739,9 @@ static lane_bits pressing_on_collider(candidate_chunk *r, const picked_particles
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
     const size_t first = r->first;
-    const real3 x = pick3(l, r->place, p->stride, 1, p->axes), v = pick3(l, m->v0 + first, p->stride, 1, p->axes),
-                residual = pick3(l, m->v + first, p->stride, 1, p->axes);
+    const real3 x = pick3_rarely(l, r->place, p->stride, 1, p->axes),
+                v = pick3_rarely(l, m->v0 + first, p->stride, 1, p->axes),
+                residual = pick3_rarely(l, m->v + first, p->stride, 1, p->axes);
     real radius, friction;
     pick_surface(r, l, &radius, &friction);
     real3 normal, velocity;
