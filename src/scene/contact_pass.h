@@ -209,7 +209,7 @@ SPRING_NOINLINE bool advance_alone(const spring_scene *s, const scene_contacts *
 }
 
 /* Removes candidates that masks exclude. */
-static inline void apply_masks(const spring_scene *s, candidate_chunk *r)
+SPRING_NOINLINE void apply_masks(const spring_scene *s, candidate_chunk *r)
 {
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
     for (uint32_t l = 0; l < r->listed && masks != NULL; l++) {

@@ -220,8 +220,8 @@ static inline void call_back(const spring_scene *s, const scalar *x, const scala
 }
 
 /* Computes out->force, the forces of links at positions x and velocities v. */
-static inline void evaluate_links(const scene_kernels *kernels, const scene_links *links, const scalar *x,
-                                  const scalar *v, scene_forces *out)
+SPRING_NOINLINE void evaluate_links(const scene_kernels *kernels, const scene_links *links, const scalar *x,
+                                    const scalar *v, scene_forces *out)
 {
     const common_kernels *const common = kernels->common;
     const bool has_records = out->records != NULL && links->terms != FREEZING_TERMS;
@@ -273,8 +273,8 @@ SPRING_NOINLINE void find_start_force(scene_step *s)
 enum { chunk = 16 * tile };
 
 /* Advances particles from ... to - 1. */
-static inline bool move_range(const scene_step *s, particle_kernel *kernel, const scene_motion *m, size_t from,
-                              size_t to)
+SPRING_NOINLINE bool move_range(const scene_step *s, particle_kernel *kernel, const scene_motion *m, size_t from,
+                                size_t to)
 {
     if (m->contacts == NO_CONTACTS)
         return kernel(&s->particles, m, from, to);
