@@ -58,7 +58,7 @@ SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_
     do {
         const uint64_t some = left < SPRING_CHECK_INTERVAL ? left : SPRING_CHECK_INTERVAL;
         left -= some;
-        if (SPRING_COMPACT)
+        if (SPRING_COMPACT || step == euler_step)
             step_group(x, v, h, c, some, start, step, damped, loaded);
         else
             SPRING_BY_FEATURES(damped, loaded, step_group, x, v, h, c, some, start, step);
@@ -66,7 +66,8 @@ SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_
     return store_group(run, i, b->x + i, b->v + i, x, v, vectors, signs);
 }
 
-/* Several steps, group by group. The loop over steps is compiled for each set of features, all other code once. */
+/* Several steps, group by group. The loop over steps is compiled for each set of features, all other code once. Euler,
+   which is never stable without damping, has one loop. */
 SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
                                   bool damped, bool loaded)
 {
