@@ -212,7 +212,7 @@ static inline scalar *scene_set_state(spring_scene *s, spring_quantity q, uint32
     return scene_axis(s, state_array(s, q), axis);
 }
 
-static inline bool scene_finite(const spring_scene *s)
+SPRING_NOINLINE bool scene_finite(const spring_scene *s)
 {
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);

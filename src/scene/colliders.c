@@ -4,6 +4,8 @@
 #include "block.h"
 #include "../spring/roots.h"
 
+#include "../simd/size_begin.h"
+
 /* ------------------------------------------------------------------------------------------------------------ poses */
 
 static void copy3(scalar to[3], vector3 from)
@@ -133,8 +135,6 @@ void spring_scene_end_impulses(spring_scene *s, double t)
 }
 
 /* ------------------------------------------------------------------------------------------------- public functions */
-
-#include "../simd/size_begin.h"
 
 spring_status spring_scene_check_colliders(const spring_scene *s, const spring_collider *c, uint32_t count,
                                            const char **field, size_t *index)

@@ -221,8 +221,8 @@ SPRING_NOINLINE void apply_masks(const spring_scene *s, candidate_chunk *r)
 }
 
 /* Prepares the arguments of a rest_kernel for a chunk of particles. */
-static void begin_rest(const scene_contacts *t, const scene_particles *p, const scene_motion *m, kept_motion *kept,
-                       size_t from, size_t count, candidate_chunk *r)
+SPRING_NOINLINE void begin_rest(const scene_contacts *t, const scene_particles *p, const scene_motion *m,
+                                kept_motion *kept, size_t from, size_t count, candidate_chunk *r)
 {
     r->setting = &t->setting;
     r->bounds = t->bounds;

@@ -209,7 +209,7 @@ static inline scene_forces scene_prepare_forces(spring_scene *s, scalar *force)
 
 /* ------------------------------------------------------------------------------------------------------- evaluation */
 
-static inline void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
+SPRING_NOINLINE void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
 {
     const size_t stride = s->layout.stride;
     const bool second = s->layout.axes > 1, third = s->layout.axes > 2;
