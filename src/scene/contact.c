@@ -847,15 +847,13 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
         const vector3 middle = between(n, m->n_end, m->fraction);
         m->n = scale(1 / length3(middle), middle);
     }
-    if (m->fraction < least_fraction || !b->moves) {
-        m->velocity = surface_velocity(b, &b->start, m->at.along, x, m->n);
-        return true;
-    }
     body_pose then = b->start;
-    then.at = between(b->start.at, b->end.at, m->fraction);
-    then.velocity = between(b->start.velocity, b->end.velocity, m->fraction);
-    then.spin = between(b->start.spin, b->end.spin, m->fraction);
-    then.along = between(b->start.along, b->end.along, m->fraction);
+    if (!(m->fraction < least_fraction) && b->moves) {
+        then.at = between(b->start.at, b->end.at, m->fraction);
+        then.velocity = between(b->start.velocity, b->end.velocity, m->fraction);
+        then.spin = between(b->start.spin, b->end.spin, m->fraction);
+        then.along = between(b->start.along, b->end.along, m->fraction);
+    }
     m->velocity = surface_velocity(b, &then, m->at.along, x, m->n);
     return true;
 }
@@ -925,9 +923,10 @@ SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x,
     return false;
 }
 
-/* Item 4, early. start: [m/s] velocity of the particle at the start of the step; inward: [m] from the tangent plane */
+/* Item 4, early. start: [m/s] velocity of the particle at the start of the step; end_of_path: in the frame; inward: [m]
+   from the tangent plane */
 static int press_from_start(const contact_setting *s, contact_particle *p, const meeting *m, vector3 start,
-                            double inward)
+                            vector3 end_of_path, double inward)
 {
     const contact_body *const b = m->b;
     const double duration = fabs(m->time_left), mu = b->friction * p->friction;
@@ -945,7 +944,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
             slip = add_scaled(slip, m->time_left / 2, cross(b->start.spin, slip));
     }
     /* way along the surface, relative to it; velocity at the start, and its change by other forces */
-    const vector3 way = direction_out(&b->end, subtract(end_in_frame(b, p), m->place));
+    const vector3 way = direction_out(&b->end, subtract(end_of_path, m->place));
     const vector3 along = tangential(add_scaled(way, -m->time_left, slip), m->n);
     const vector3 mean = scale(1 / m->time_left, along);
     const vector3 u0 = tangential(subtract(start, m->velocity), m->n), A = scale(2, subtract(mean, u0));
@@ -1027,7 +1026,7 @@ static int collide_once(const contact_setting *s, contact_particle *p, const mee
     }
     if (m->fraction > 0.5 || m->again || m->start_depth > 0)
         return press_late(s, p, m);
-    return press_from_start(s, p, m, start, inward);
+    return press_from_start(s, p, m, start, end, inward);
 }
 
 /* Continues the path after the bend in steps that cannot pass the middle of a custom body, and pushes it out after
