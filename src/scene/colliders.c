@@ -26,26 +26,6 @@ static scalar bounded(double value)
     return value > (double)SCALAR_MAX ? SCALAR_MAX : value < -(double)SCALAR_MAX ? -SCALAR_MAX : (scalar)value;
 }
 
-static double distance_of_vectors(vector3 a, vector3 b)
-{
-    const vector3 d = {a.x - b.x, a.y - b.y, a.z - b.z};
-    return spring_sqrt(dot_of_vectors(d, d));
-}
-
-/* [m] An upper bound on the displacements of the points of the core in the step; of a turning plane it is infinite. */
-static double motion_of(const contact_body *b)
-{
-    const body_pose *const start = &b->start, *const end = &b->end;
-    double motion = distance_of_vectors(start->at, end->at);
-    if (b->shape == SPRING_PLANE && b->turns)
-        return (double)INFINITY;
-    for (int i = 0; i < (b->flat ? 2 : 3) && b->shape == SPRING_BOX && b->turns; i++)
-        motion += b->half[i] * distance_of_vectors(start->axis[i], end->axis[i]);
-    if (b->shape == SPRING_CAPSULE)
-        motion += distance_of_vectors(start->along, end->along);
-    return motion;
-}
-
 /* Bound k: a body in the precision of the scene. Its reach grows by more than the rounding errors of coordinates. */
 static void place_bound(collider_bounds *bounds, unsigned k, const contact_body *b, scalar largest_radius)
 {
@@ -71,7 +51,7 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     /* `rounding` once more for the clearance, since positions of colliders are rounded in each step. */
     const double margin = rounded_up * b->growth * (double)largest_radius + 2 * rounding;
     bounds->wide[k] = (scalar)(rounded_up * ((double)to->reach + b->growth * (double)largest_radius) + rounding);
-    bounds->displacement[k] = (scalar)(rounded_up * motion_of(b));
+    bounds->displacement[k] = (scalar)(rounded_up * spring_contact_motion(b));
     bounds->factor[k] = (scalar)(rounded_up * b->growth);
     for (int a = 0; a < 3; a++) {
         bounds->low[a][k] = (scalar)(b->low[a] - margin);

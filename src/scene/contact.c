@@ -336,6 +336,17 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     bound_with_box(b, rounded_up * (b->reach + b->growth * shift));
 }
 
+double spring_contact_motion(const contact_body *b)
+{
+    const body_pose *const start = &b->start, *const end = &b->end;
+    if (b->shape == SPRING_PLANE && b->turns)
+        return (double)INFINITY;
+    double motion = length3(subtract(start->at, end->at));
+    for (int i = 0; i < (b->flat ? 2 : 3) && b->shape == SPRING_BOX && b->turns; i++)
+        motion += b->half[i] * length3(subtract(start->axis[i], end->axis[i]));
+    return b->shape == SPRING_CAPSULE ? motion + length3(subtract(start->along, end->along)) : motion;
+}
+
 /* [m] The size of numbers that its distances are computed from. */
 static double rounding_scale_at(const contact_body *b, const body_pose *pose)
 {

@@ -111,6 +111,9 @@ SPRING_INTERNAL void spring_collider_move(spring_collider *c, double t, uint32_t
 SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1,
                                           uint32_t axes);
 
+/* [m] An upper bound on the displacements of the points of the core in the step; of a turning plane it is infinite. */
+SPRING_INTERNAL double spring_contact_motion(const contact_body *b);
+
 /* Moves a particle: changes w and d by its contacts. */
 SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_particle *p);
 
