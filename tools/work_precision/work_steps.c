@@ -78,7 +78,7 @@ static double gain_of(const steps_motion *m, double fraction)
     spring_grid_fill(&g, position[0], pinned, link);
     const double middle = (m->count[0] - 1) * g.spacing / 2, slope = sqrt(1 - m->span * m->span);
     for (size_t i = 0; i < 3 * particles; i++) /* in all directions, without a pattern */
-        velocity[0][i] = pinned[i / 3] ? 0 : m->speed * sin(1.7 * (double)i + 0.01 * (double)(i * i));
+        velocity[i / 3][i % 3] = pinned[i / 3] ? 0 : m->speed * sin(1.7 * (double)i + 0.01 * (double)(i * i));
     for (size_t i = 0; i < particles && m->span > 0; i++) { /* a level V of two straight halves */
         const double x = position[i][0];
         position[i][2] = slope * (x < middle ? x : 2 * middle - x);
