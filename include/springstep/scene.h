@@ -373,10 +373,10 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * dt. Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain (Omega
  * dt)^2 (tests/scene/test_forces.c).
  *
- * Contacts have order 2 with leapfrog and RK4, even with colliders that turn and accelerate, and with friction across
- * stops and reversals of direction. Impacts have order 1 with drag, link damping or a callback that uses velocities,
- * because these forces jump. With symplectic Euler, contacts have order 1. See spring_scene_set_colliders(). Colliders
- * do not change the stable step.
+ * Contacts have order 2 with leapfrog, and in general with RK4, even with colliders that turn and accelerate, and with
+ * friction across stops and reversals of direction. Impacts have order 1 with drag, link damping or a callback that
+ * uses velocities, because these forces jump. With symplectic Euler, contacts have order 1. See
+ * spring_scene_set_colliders(). Colliders do not change the stable step.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
