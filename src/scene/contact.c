@@ -699,10 +699,12 @@ SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, slide_
 typedef struct meeting {
     const contact_body *b;
     unsigned index;
-    bool again;         /* the particle has touched a collider in this step */
-    double slop;        /* [m] */
-    vector3 start, way; /* [m] in the frame: the chord */
-    near_point at;      /* at the time of the contact */
+    bool again;             /* the particle has touched a collider in this step */
+    const vector3 *touched; /* normals of the earlier contacts of this step, in the scene */
+    int contacts;           /* their number */
+    double slop;            /* [m] */
+    vector3 start, way;     /* [m] in the frame: the chord */
+    near_point at;          /* at the time of the contact */
     double fraction, gap;
     double start_depth; /* [m] inside the body at the start, if that is more than the slop; else 0 */
     vector3 place;      /* in the frame */
@@ -806,17 +808,19 @@ static bool find_custom_impact(contact_particle *p, meeting *m)
     return false;
 }
 
-/* Whether a chord stays on the outer side of the plane of a face of a box. Along the face, Newton's method would take
-   rounding errors for an impact. flush: [m] how deep it may start. If it starts away from the box, it may also go so much
-   deeper. */
+/* Whether a face of a box continues a face that the particle has touched in this step, and the chord stays on its outer
+   side. Along the face, Newton's method would take rounding errors for an impact. flush: [m] how deep the chord may start.
+   If it starts away from the box, it may also go so much deeper. */
 static bool passes_face(const contact_body *b, const meeting *m, double radius, double flush)
 {
     const double down = m->at.gap > m->slop ? flush : m->slop;
-    for (int a = 0; a < 3 && b->shape == SPRING_BOX; a++) {
-        const double from = component(m->start, a), way = component(m->way, a), side = from < 0 ? -1 : 1;
-        const double above = side * from - b->half[a] - radius;
-        if (above >= -flush && side * way >= -fmax(above, 0) - down)
-            return true;
+    for (int k = 0; k < m->contacts && b->shape == SPRING_BOX; k++) {
+        const vector3 n = direction_in(&b->end, m->touched[k]);
+        for (int a = 0; a < 3; a++) {
+            const double side = component(n, a), above = side * component(m->start, a) - b->half[a] - radius;
+            if (fabs(side) > same_plane && above >= -flush && side * component(m->way, a) >= -fmax(above, 0) - down)
+                return true;
+        }
     }
     return false;
 }
@@ -835,8 +839,7 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     near_point there;
     if (m->again && m->start_depth > 0 && gap_at_end(p, b, &there) >= -m->slop)
         return false; /* an earlier contact of this step has moved it out */
-    if ((m->again || m->at.gap > m->slop) &&
-        passes_face(b, m, b->radius + p->radius, m->again ? flush_of(p, b) : m->slop))
+    if (passes_face(b, m, b->radius + p->radius, flush_of(p, b)))
         return false;
     m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
     const bool custom = is_custom(b->shape), enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
@@ -1396,6 +1399,7 @@ static bool is_before(const meeting *m, const meeting *other)
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
     uint32_t nearby = p->nearby == UINT32_MAX ? near_path(s, p) : p->nearby, clear = 0, last = 0;
+    vector3 normal[contact_rounds]; /* of the contacts */
     p->touched = 0;
     for (int round = 0; round < contact_rounds; round++) {
         meeting each[2];
@@ -1406,7 +1410,9 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
                 continue;
             next->b = &s->body[i];
             next->index = i;
-            next->again = p->touched != 0;
+            next->again = round > 0;
+            next->touched = normal;
+            next->contacts = round;
             if (!meet(s, p, next))
                 clear |= s->body[i].degenerate ? 0 : bit;
             else if (first == NULL || is_before(next, first)) {
@@ -1417,6 +1423,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         if (first == NULL)
             break;
         last = UINT32_C(1) << first->index;
+        put(&normal[round], first->n_end);
         const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;
         first->goes_on = next_one < s->count;
         clear = (collide(s, p, first) & CLEAR) != 0 ? last : 0;

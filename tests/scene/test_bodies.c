@@ -1760,6 +1760,27 @@ static void floor_of_boxes(void)
     CHECK(misses <= 1, "as on a plane, unless a step starts at an edge, to rounding errors");
 }
 
+/* A particle without radius falls along a wall onto the edge of a floor, which enters the wall by very little. */
+static void floor_at_a_wall(void)
+{
+    for (int k = 0; k < 60; k++) {
+        const double enters = in_double ? 1e-7 : 1e-4, dt = frame / (1 << k % 3), g[3] = {0, -gravity, 0};
+        const double x[3] = {-0.2, random_uniform(0.1, 1), 0}, v[3] = {random_uniform(1, 8), 0, random_uniform(-1, 1)};
+        spring_collider c[2] = {unit_box, unit_box}; /* the top of the floor is y = 0, and the wall begins at x = 0 */
+        c[0].at[0] = enters - c[0].half[0];
+        c[0].at[1] = -c[0].half[1];
+        c[1].half[1] = 2;
+        c[1].at[0] = c[1].half[0];
+        spring_scene *s = ball_at(x, v, g, 0, 2);
+        double now[3];
+        set(s, c, 2);
+        run(s, with_contacts[k % method_count], dt, (uint64_t)(1 / dt));
+        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+        CHECK_BELOW(fmax(fabs(now[1]), fmax(0, now[0])), 1e4 * EPS, "it lies on the floor, at the wall or before it");
+        free(s);
+    }
+}
+
 /* Two particles on a damped link, with the same velocity v, which changes in a step of 0.01 s with the plane y = 0. */
 static void step_of_pair(const double x[3], double v[3], const double g[3], const spring_collider *c, double dt_G,
                          double impulse[3])
@@ -2136,6 +2157,7 @@ static const test tests[] = {
     {"heavy body on feet", heavy_body_on_feet},
     {"damped block slides sideways", damped_block_slides_sideways},
     {"floor of boxes", floor_of_boxes},
+    {"floor at a wall", floor_at_a_wall},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
     {"damped bounces", damped_bounces},
