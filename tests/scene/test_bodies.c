@@ -1760,11 +1760,11 @@ static void floor_of_boxes(void)
     CHECK(misses <= 1, "as on a plane, unless a step starts at an edge, to rounding errors");
 }
 
-/* A particle without radius falls along a wall onto the edge of a floor, which enters the wall by very little. */
+/* A particle without radius slides down a wall onto the edge of a floor, which enters the wall by very little. */
 static void floor_at_a_wall(void)
 {
     for (int k = 0; k < 60; k++) {
-        const double enters = in_double ? 1e-7 : 1e-4, dt = frame / (1 << k % 3), g[3] = {0, -gravity, 0};
+        const double enters = in_double ? 1e-7 : 1e-4, dt = frame / (1 << k % 3), g[3] = {3, -gravity, 0};
         const double x[3] = {-0.2, random_uniform(0.1, 1), 0}, v[3] = {random_uniform(1, 8), 0, random_uniform(-1, 1)};
         spring_collider c[2] = {unit_box, unit_box}; /* the top of the floor is y = 0, and the wall begins at x = 0 */
         c[0].at[0] = enters - c[0].half[0];
