@@ -59,15 +59,32 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     }
 }
 
+/* [m] Edges of boxes may touch another body. So that rounding errors of a particle without radius on that body do not take
+   it beyond the edge, all bodies have a skin, which is thicker than these errors. It is the same for all, so that the tops
+   of boxes side by side stay one face. Returns the size of the coordinates; 0: without a skin. */
+static double size_for_skin(const spring_scene *s)
+{
+    const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
+    double size = 0;
+    bool boxes = false;
+    for (uint32_t i = 0; i < s->colliders; i++) {
+        size = fmax(size, spring_contact_size(&c[i], s->layout.axes));
+        boxes = boxes || c[i].shape == SPRING_BOX;
+    }
+    return boxes && s->colliders > 1 ? size : 0;
+}
+
 void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool all)
 {
     const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
     contact_body *const body = scene_memory(s, ARRAY_PLACED);
     collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
+    const double size = size_for_skin(s);
     bounds->count = s->colliders;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
             spring_contact_place(&body[i], &c[i], t0, t1, s->layout.axes);
+            spring_contact_add_skin(&body[i], size, (double)SCALAR_EPSILON);
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
     }

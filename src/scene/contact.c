@@ -72,6 +72,9 @@ enum {
 /* Fractions of a step up to this size are rounding errors. */
 static const double least_fraction = 1e-13;
 
+/* Of the skin, in rounding errors of coordinates. It is four times slop_of(). */
+static const double skin_thickness = 32;
+
 /* The cosine between normals of a custom body on the same face. */
 static const double same_face = 0.9;
 
@@ -334,6 +337,31 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     b->growth = unbounded ? 1 : 1 / (1 - angle);
     b->reach = unbounded ? infinite : (radius + stretch + angle * size_of_core(b)) * b->growth;
     bound_with_box(b, rounded_up * (b->reach + b->growth * shift));
+}
+
+double spring_contact_size(const spring_collider *c, uint32_t axes)
+{
+    const bool flat = axes == 2;
+    const vector3 at = vector_of(c->at, flat), n = vector_of(c->axis[0], flat);
+    if (c->shape == SPRING_PLANE)
+        return fabs(inner(n, at)) * size_sum(n);
+    double size = size_sum(at) + c->radius;
+    if (c->shape == SPRING_CAPSULE)
+        size += size_sum(subtract(vector_of(c->to, flat), at));
+    for (int a = 0; a < (flat ? 2 : 3) && c->shape == SPRING_BOX; a++)
+        size += c->half[a];
+    return size;
+}
+
+void spring_contact_add_skin(contact_body *b, double size, double epsilon)
+{
+    b->skin = skin_thickness * epsilon * size;
+    b->radius += b->skin;
+    b->reach += b->growth * b->skin;
+    for (int a = 0; a < 3; a++) {
+        b->low[a] -= rounded_up * b->growth * b->skin;
+        b->high[a] += rounded_up * b->growth * b->skin;
+    }
 }
 
 double spring_contact_motion(const contact_body *b)
@@ -825,6 +853,23 @@ static bool passes_face(const contact_body *b, const meeting *m, double radius, 
     return false;
 }
 
+/* On an edge of a box, the contact is with the face that the path enters most. */
+static void choose_face(meeting *m, double radius)
+{
+    const contact_body *const b = m->b;
+    double most = 0;
+    const double least = m->at.gap - m->slop;
+    for (int a = 0; a < 3; a++) {
+        const double side = copysign(1, component(m->start, a)), rate = side * component(m->way, a);
+        const double gap = fabs(component(m->start, a)) - b->half[a] - radius;
+        if (!(gap >= least) || !(rate < most))
+            continue;
+        most = rate;
+        m->at.gap = gap;
+        m->at.normal = (vector3){a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
+    }
+}
+
 /* Items 1 and 2. Returns whether there is a contact. */
 static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
 {
@@ -835,11 +880,14 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->way = subtract(end_in_frame(b, p), m->start);
     m->fraction = 0;
     find_nearest(p, b, 0, m->start, &m->at);
-    m->start_depth = m->at.gap < -m->slop ? -m->at.gap : 0;
+    if (b->skin > 0 && b->shape == SPRING_BOX && m->at.gap < -m->slop)
+        choose_face(m, b->radius + p->radius);
+    m->start_depth =
+        m->at.gap < -m->slop - b->skin ? -m->at.gap : 0; /* a particle may start on the body, in its skin */
     near_point there;
     if (m->again && m->start_depth > 0 && gap_at_end(p, b, &there) >= -m->slop)
         return false; /* an earlier contact of this step has moved it out */
-    if (passes_face(b, m, b->radius + p->radius, flush_of(p, b)))
+    if (passes_face(b, m, b->radius + p->radius, flush_of(p, b) + b->skin))
         return false;
     m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
     const bool custom = is_custom(b->shape), enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
@@ -897,7 +945,8 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
     /* Onto the tangent plane, in the frame of the body: outside, if the body is convex. */
     const vector3 end = end_in_frame(b, p);
     const double inward = inward_at(m, end);
-    if (inward < 0 && !(m->again && m->start_depth > 0))
+    const bool deep = m->again && -inward < 2 * m->start_depth; /* in several bodies from the start */
+    if (inward < 0 && !deep)
         p->d = add_scaled(p->d, -inward, m->n_end);
     near_point there;
     const double gap = gap_at_end(p, b, &there);
@@ -1366,24 +1415,31 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
 
 /* The index of a body that continues the face on which a path is pressed, as on a floor of boxes, and on which the path
    ends; or the number of bodies. Otherwise the particle would fall from the start of the step, and hit the edge of that
-   body. */
-static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_t nearby, const meeting *m)
+   body. goes_on is set also if a path along the face hits another body, as a wall beside the floor. */
+static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_t nearby, meeting *m)
 {
+    contact_particle straight = *p;
+    meeting other = {.again = false};
     if (m->again || m->start_depth > 0 || m->fraction > 0.5 || is_custom(m->b->shape))
         return s->count;
     const double inward = inward_at(m, end_in_frame(m->b, p));
     const vector3 end = add_scaled(add(p->x0, p->d), -inward, m->n_end);
     near_point at;
     find_nearest(p, m->b, 1, place_in(&m->b->end, end), &at);
-    if (!(inward < 0) || !(at.gap > 1e-6 * flush_of(p, m->b)))
+    if (!(inward < 0) || !(at.gap > 0))
         return s->count;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
         if ((nearby >> i & 1) == 0 || i == m->index || is_custom(b->shape))
             continue;
         find_nearest(p, b, 1, place_in(&b->end, end), &at);
-        if (fabs(at.gap) <= flush_of(p, b) && inner(direction_out(&b->end, at.normal), m->n_end) > same_plane)
+        if (fabs(at.gap) <= flush_of(p, b) && inner(direction_out(&b->end, at.normal), m->n_end) > same_plane) {
+            m->goes_on = true;
             return i;
+        }
+        straight.d = subtract(end, p->x0);
+        other.b = b;
+        m->goes_on = m->goes_on || (m->b->shape == SPRING_BOX && meet(s, &straight, &other) && other.fraction > 0);
     }
     return s->count;
 }
@@ -1425,11 +1481,13 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         last = UINT32_C(1) << first->index;
         put(&normal[round], first->n_end);
         const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;
-        first->goes_on = next_one < s->count;
-        clear = (collide(s, p, first) & CLEAR) != 0 ? last : 0;
+        const vector3 before = p->d;
+        const uint32_t cleared = (collide(s, p, first) & CLEAR) != 0 ? last : 0;
+        const bool same = size_sum(subtract(p->d, before)) <= first->slop / 8; /* the path, to rounding errors */
+        clear = cleared | (same ? clear : 0);
         near_point there;
         const bool beyond =
-            first->goes_on && gap_at_end(p, first->b, &there) > gap_at_end(p, &s->body[next_one], &there);
+            next_one < s->count && gap_at_end(p, first->b, &there) > gap_at_end(p, &s->body[next_one], &there);
         p->touched |= beyond ? UINT32_C(1) << next_one : last;
         nearby = near_path(s, p) | p->touched;
     }

@@ -1754,8 +1754,9 @@ static void floor_of_boxes(void)
             free(s);
         }
         const double apart = hypot(hypot(end[0][0] - end[1][0], end[0][1] - end[1][1]), end[0][2] - end[1][2]);
-        /* for a particle with the radius r, a step of the height d = 5e-7 m is a slope of sqrt(2 d/r) */
-        misses += !(apart <= (rounded ? 1e-3 : in_double ? 1e-12 : 1e-4));
+        /* For a particle with the radius r, a step of the height d = 5e-7 m is a slope of sqrt(2 d/r). The skin of the
+           boxes, whose sizes and coordinates add up to at most 130 m, is 32 EPS of that. */
+        misses += !(apart <= (rounded || !in_double ? 1e-3 : 1e-12));
     }
     CHECK(misses <= 1, "as on a plane, unless a step starts at an edge, to rounding errors");
 }
@@ -1777,6 +1778,231 @@ static void floor_at_a_wall(void)
         run(s, with_contacts[k % method_count], dt, (uint64_t)(1 / dt));
         spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
         CHECK_BELOW(fmax(fabs(now[1]), fmax(0, now[0])), 1e4 * EPS, "it lies on the floor, at the wall or before it");
+        free(s);
+    }
+}
+
+enum { ROOM_TILES = 3, ROOM_BODIES = ROOM_TILES * ROOM_TILES + 4, ROOM_PARTICLES = 8 };
+
+/* A room with a floor of boxes, which walls touch. */
+typedef struct room {
+    double size, half;           /* [m] of a tile, of the room */
+    double axis[3][3], at[3], t; /* now; the second axis is up; [m] the centre of the floor; [s] since the start */
+    double first[3][3], rate[3], spin[3]; /* the axes at the start; [m/s]; [rad/s] */
+    double place[ROOM_BODIES][3];         /* [m] of the bodies, in the room */
+    spring_collider body[ROOM_BODIES];
+    bool rounded; /* coordinates of the bodies are those of single precision */
+} room;
+
+/* A place, from its coordinates in the room. */
+static void place_of(const room *r, const double to[3], double x[3])
+{
+    for (int a = 0; a < 3; a++)
+        x[a] = r->at[a] + to[0] * r->axis[0][a] + to[1] * r->axis[1][a] + to[2] * r->axis[2][a];
+}
+
+/* Moves the room to the time t. */
+static void move_room(room *r, double t)
+{
+    double phi[3];
+    for (int a = 0; a < 3; a++) {
+        r->at[a] += (t - r->t) * r->rate[a];
+        phi[a] = t * r->spin[a];
+    }
+    r->t = t;
+    for (int k = 0; k < 3; k++)
+        turn(phi, r->first[k], r->axis[k]);
+    for (int i = 0; i < ROOM_BODIES; i++) {
+        spring_collider *const c = &r->body[i];
+        double arm[3], v[3];
+        place_of(r, r->place[i], c->at);
+        for (int a = 0; a < 3; a++)
+            arm[a] = c->at[a] - r->at[a];
+        cross(r->spin, arm, v);
+        cross(r->spin, v, c->acceleration);
+        for (int a = 0; a < 3; a++) {
+            c->velocity[a] = r->rate[a] + v[a];
+            c->at[a] = r->rounded ? (float)c->at[a] : c->at[a];
+        }
+        memcpy(c->spin, r->spin, sizeof c->spin);
+        if (c->shape == SPRING_BOX)
+            memcpy(c->axis, r->axis, sizeof c->axis);
+        for (int a = 0; a < 3 && c->shape == SPRING_PLANE; a++)
+            c->axis[0][a] = (i < 2 ? 1 : -1) * r->axis[i % 2 ? 0 : 2][a];
+    }
+}
+
+/* Walls are boxes beside the floor, boxes that end at the level of the floor, or planes. */
+static void random_room(room *r, int k)
+{
+    const double tilt[3] = {random_uniform(-0.4, 0.4), random_uniform(-3, 3), random_uniform(-0.4, 0.4)};
+    const bool turned = k % 4 > 1, moves = k % 8 > 3, spins = moves && k % 3 != 0;
+    r->rounded = k % 16 > 7;
+    r->size = random_uniform(0.4, 1.2);
+    r->half = ROOM_TILES * r->size / 2;
+    r->t = 0;
+    for (int a = 0; a < 3; a++) {
+        turn(tilt, unit_box.axis[a], r->first[a]);
+        if (!turned)
+            memcpy(r->first[a], unit_box.axis[a], sizeof r->first[a]);
+        r->at[a] = random_uniform(-2, 2);
+        r->rate[a] = moves ? random_uniform(-2, 2) : 0;
+        r->spin[a] = spins ? random_uniform(-0.5, 0.5) : 0;
+    }
+    for (int i = 0; i < ROOM_BODIES; i++) {
+        const int t = i - 4, along = i % 2 ? 0 : 2;
+        spring_collider *const c = &r->body[i];
+        double *const to = r->place[i];
+        *c = (spring_collider){.shape = t < 0 && k % 3 == 0 ? SPRING_PLANE : SPRING_BOX,
+                               .half = {r->size / 2, 0.25, r->size / 2},
+                               .friction = k % 5 ? random_uniform(0, 0.8) : 0};
+        memcpy(to, (double[]){(t % ROOM_TILES - 1) * r->size, -0.25, (t / ROOM_TILES - 1) * r->size},
+               sizeof r->place[i]);
+        if (t >= 0)
+            continue;
+        const double thickness = c->shape == SPRING_BOX ? 0.2 : 0;
+        to[0] = to[2] = 0;
+        to[along] = (i < 2 ? -1 : 1) * (r->half + thickness);
+        to[1] = k % 3 == 1 ? 2 : 1;
+        c->half[0] = c->half[2] = r->half + 0.4;
+        c->half[1] = 2;
+        c->half[along] = thickness;
+    }
+    move_room(r, 0);
+}
+
+/* Particles with links between all of them. */
+static spring_scene *particles_in_room(const room *r, size_t count, double radius)
+{
+    const double from[3] = {random_uniform(-0.8, 0.8) * r->half, random_uniform(0.3, 0.6),
+                            random_uniform(-0.8, 0.8) * r->half},
+                 speed[3] = {random_uniform(-6, 6), random_uniform(-3, 1), random_uniform(-6, 6)};
+    double x[ROOM_PARTICLES][3], v[ROOM_PARTICLES][3];
+    spring_link link[ROOM_PARTICLES * (ROOM_PARTICLES - 1) / 2];
+    size_t links = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const double to[3] = {from[0] + 0.05 * (i & 1), from[1] + 0.05 * (i >> 1 & 1), from[2] + 0.05 * (i >> 2)};
+        place_of(r, to, x[i]);
+        for (int a = 0; a < 3; a++)
+            v[i][a] = r->rate[a] + speed[a];
+        for (uint32_t j = 0; j < i; j++)
+            link[links++] = (spring_link){.a = j, .b = i, .rest = 0.06, .stiffness = 100, .damping = 0.3};
+    }
+    spring_scene_def def = {.particles = count,
+                            .position = x[0],
+                            .velocity = v[0],
+                            .links = links,
+                            .link = links > 0 ? link : NULL,
+                            .mass_all = 0.1,
+                            .particle_radius = (scalar)radius,
+                            .colliders = ROOM_BODIES,
+                            .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
+    for (int a = 0; a < 3; a++)
+        def.gravity[a] = -gravity * r->axis[1][a];
+    return scene_of(&def);
+}
+
+/* [m] How far a particle is outside of a room. */
+static double outside_of_room(const room *r, const double x[3])
+{
+    double from[3];
+    for (int a = 0; a < 3; a++)
+        from[a] = x[a] - r->at[a];
+    return fmax(-dot(from, r->axis[1]), fmax(fabs(dot(from, r->axis[0])), fabs(dot(from, r->axis[2]))) - r->half);
+}
+
+/* [m/s] The velocity of a particle through the floor that it lies on, in a room without spin; otherwise 0. */
+static double through_floor(const room *r, const double x[3], const double v[3])
+{
+    double u[3], from[3];
+    for (int a = 0; a < 3; a++) {
+        u[a] = v[a] - r->rate[a];
+        from[a] = x[a] - r->at[a];
+    }
+    return length(r->spin) == 0 && dot(from, r->axis[1]) < 1e-4 ? fabs(dot(u, r->axis[1])) : 0;
+}
+
+/* Particles slide into the corners of a room of boxes that only touch, and come to rest there. They have no radius, unless
+   the bodies do not fit each other to rounding errors: in a room that turns, and of rounded coordinates in double precision. */
+static void room_of_boxes(void)
+{
+    double worst = -1, fastest = 0;
+    for (int k = 0; k < 480; k++) {
+        const size_t count = k % 7 ? 1 : ROOM_PARTICLES;
+        const double dt = frame / (count == 1 ? 1 << k % 3 : 8);
+        room r;
+        random_room(&r, k);
+        const bool spins = length(r.spin) > 0;
+        const double radius = spins || (in_double && r.rounded) ? (k % 3 == 1 ? 1e-3 : 1e-4) : 0;
+        const uint64_t steps = (uint64_t)(2 / dt), each = spins ? 1 : steps;
+        spring_scene *s = particles_in_room(&r, count, radius);
+        double x[ROOM_PARTICLES][3], v[ROOM_PARTICLES][3];
+        for (uint64_t n = 0; n < steps; n += each) {
+            move_room(&r, spring_scene_time(s));
+            set(s, r.body, ROOM_BODIES);
+            run(s, with_contacts[k % 11 == 0], dt, each);
+        }
+        move_room(&r, spring_scene_time(s));
+        spring_scene_get(s, SPRING_POSITION, x[0], 0, 0, count);
+        spring_scene_get(s, SPRING_VELOCITY, v[0], 0, 0, count);
+        for (size_t i = 0; i < count; i++)
+            worst = fmax(worst, outside_of_room(&r, x[i]) + (spins || r.rounded ? 0 : radius));
+        fastest = count == 1 ? fmax(fastest, through_floor(&r, x[0], v[0])) : fastest;
+        free(s);
+    }
+    /* The sizes of the coordinates of a particle add up to at most 21 m, and those of a body, with its half extents, to 25 m. */
+    CHECK(worst <= 8 * EPS * 46, "inside, to the slop");
+    CHECK_BELOW(fastest, 64 * EPS, "it lies on the floor");
+}
+
+/* A small particle slides over a floor to a wall that stands at the level of the floor and touches only its edge. */
+static void wall_on_a_floor(void)
+{
+    for (int k = 0; k < 400; k++) {
+        const double radius = k % 2 ? random_log(1e-5, 1e-2) : 0, g[3] = {k % 3 ? 0.5 : 0, -gravity, 0};
+        const double x[3] = {-random_log(1e-3, 0.5), radius, 0},
+                     v[3] = {random_log(0.05, 5), 0, random_uniform(-0.2, 0.2)};
+        spring_collider c[2] = {unit_box, unit_box}; /* the floor ends at x = 0, and the wall begins there, at y = 0 */
+        c[0].at[0] = -c[0].half[0];
+        c[0].at[1] = -c[0].half[1];
+        c[1].half[1] = c[1].at[1] = 2;
+        c[1].at[0] = c[1].half[0];
+        spring_scene *s = ball_at(x, v, g, radius, 2);
+        double now[3];
+        set(s, c, 2);
+        run(s, with_contacts[k % method_count], frame, 120);
+        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+        CHECK(now[1] >= radius - 64 * EPS && now[1] <= radius + 1024 * EPS && now[0] <= 64 * EPS - radius,
+              "it lies on the floor, at the wall or before it");
+        free(s);
+    }
+}
+
+/* A particle rests in a corner of two planes and a floor that move together. */
+static void corner_of_planes(void)
+{
+    for (int k = 0; k < 1000; k++) {
+        const double rate[3] = {random_uniform(-2, 2), random_uniform(-2, 2), random_uniform(-2, 2)};
+        const double at[3] = {random_uniform(-2, 2), random_uniform(-2, 2), random_uniform(-2, 2)},
+                     g[3] = {0, -gravity, 0};
+        const double x[3] = {at[0] + 0.01, at[1] + 0.01, at[2] + 0.01};
+        const double v[3] = {rate[0] - 1, rate[1], rate[2] - 1};
+        spring_collider c[3] = {
+            {.shape = SPRING_PLANE, .axis = {{1, 0, 0}}}, {.shape = SPRING_PLANE, .axis = {{0, 0, 1}}}, unit_box};
+        for (int i = 0; i < 3; i++) {
+            memcpy(c[i].at, at, sizeof at);
+            memcpy(c[i].velocity, rate, sizeof rate);
+        }
+        c[2].at[0] += c[2].half[0]; /* its edges touch the planes */
+        c[2].at[1] -= c[2].half[1];
+        c[2].at[2] += c[2].half[2];
+        spring_scene *s = ball_at(x, v, g, 0, 3);
+        double now[3];
+        set(s, c, 3);
+        run(s, SPRING_LEAPFROG, frame, 60);
+        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+        for (int a = 0; a < 3; a++)
+            CHECK(fabs(now[a] - at[a] - spring_scene_time(s) * rate[a]) <= 64 * EPS * 30, "in the corner, to the skin");
         free(s);
     }
 }
@@ -2158,6 +2384,9 @@ static const test tests[] = {
     {"damped block slides sideways", damped_block_slides_sideways},
     {"floor of boxes", floor_of_boxes},
     {"floor at a wall", floor_at_a_wall},
+    {"room of boxes", room_of_boxes},
+    {"wall on a floor", wall_on_a_floor},
+    {"corner of planes", corner_of_planes},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
     {"damped bounces", damped_bounces},
