@@ -335,10 +335,11 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * friction, for dt G > 1000. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of
  * the kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order
  * falls to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and
- * about 1.6 sqrt(dt G) times beyond. Just below dt G = 0.6, the error is two to three times as large as just above,
- * where a second evaluation is added. Positions, velocities and time are then the whole state: no force is kept.
- * Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and with (v0 + v1)/2,
- * where v1 follows from the first call. The series is then computed twice. A negative dt always uses explicit damping.
+ * about 1.6 sqrt(dt G) times beyond. If links are overdamped, the error just below dt G = 0.6 is two to three times as
+ * large as just above, where a second evaluation is added. Positions, velocities and time are then the whole state: no
+ * force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and with
+ * (v0 + v1)/2, where v1 follows from the first call. The series is then computed twice. A negative dt always uses
+ * explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
@@ -373,10 +374,10 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * dt. Use RK4, which loses energy: the fraction (Omega dt)^6/72 per step without links. Both Euler methods gain (Omega
  * dt)^2 (tests/scene/test_forces.c).
  *
- * Contacts have order 2 with leapfrog, and in general with RK4, even with colliders that turn and accelerate, and with
- * friction across stops and reversals of direction. Impacts have order 1 with drag, link damping or a callback that
- * uses velocities, because these forces jump. With symplectic Euler, contacts have order 1. See
- * spring_scene_set_colliders(). Colliders do not change the stable step.
+ * Contacts have order 2 with leapfrog, even with colliders that turn and accelerate, and with friction across stops and
+ * reversals of direction. Impacts have order 1 with drag, link damping or a callback that uses velocities, because
+ * these forces jump. With RK4, friction has order 1 too with link damping or such a callback. With symplectic Euler,
+ * contacts have order 1. See spring_scene_set_colliders(). Colliders do not change the stable step.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
@@ -442,10 +443,10 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * At rest without link damping, the stability limit may be larger than the bound. With leapfrog, symplectic Euler and
  * SRKN6, it is 1.2 to 1.35 times the bound for a height field with structural, shear and bend springs and at least four
  * particles along each edge, 1.35 to 1.75 times for such a cloth (narrower ones 1 to 1.25 times), and about 2 times for
- * such a soft body of at least three particles along each edge (fewer: 1.3 to 1.9); with RK4 and RKN8 it is larger. It
- * is closer to the bound with fewer springs or under tension: the ratio is 1 for a rope and for a height field of
- * structural springs only, and 1.4 for a cloth that is stretched by half. With heavy damping, the limit may be several
- * times the bound, but not for leapfrog with drag alone.
+ * such a soft body of at least three particles along each edge (fewer: 1.3 to 1.9); with RK4 it is larger. It is closer
+ * to the bound with fewer springs or under tension: the ratio is 1 for a rope and for a height field of structural
+ * springs only, and 1.4 for a cloth that is stretched by half. With heavy damping, the limit may be several times the
+ * bound, but not for leapfrog with drag alone.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -560,7 +561,9 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * keep moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that
  * is inside a collider is moved to its surface in the next step, and out of all of them if it is inside several, unless
  * these face or enclose it, as at the seam of two boxes. The move adds no velocity, but a velocity into the body is then
- * treated as an impact. Pinned particles pass through colliders.
+ * treated as an impact. Pinned particles pass through colliders. With a box and another collider in a scene, particles
+ * rest above all colliders by 32 rounding errors of the largest coordinate of a collider, so that they do not fall
+ * between boxes that touch.
  *
  * To set colliders once per frame of length T, give the present pose, the present velocity V of the body, and the
  * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and

@@ -11,6 +11,8 @@
  *           at the end of the step. The path is defined as the chord y0 + theta (y1 - y0). The gap to a convex body
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
+ * Skin      In scenes with a box and another collider, the radii of all bodies are larger by rounding errors, so that
+ *           particles without radius on one body are not beyond the edge of another: see size_for_skin().
  * Drift     For each contact, in the order of the times of impact:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity. If it is
  *              inside several colliders, it is moved out of the first, and then out of each that it is still inside.
