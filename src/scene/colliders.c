@@ -79,7 +79,10 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
     const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
     contact_body *const body = scene_memory(s, ARRAY_PLACED);
     collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
-    const double size = size_for_skin(s);
+    bool moves = all;
+    for (uint32_t i = 0; i < s->colliders; i++)
+        moves = moves || body[i].moves;
+    const double size = moves ? size_for_skin(s) : 0;
     bounds->count = s->colliders;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
