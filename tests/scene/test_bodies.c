@@ -1589,7 +1589,8 @@ static void hit_from_rest(void)
     const double below = 0.125;
     spring_collider both[2] = {c, unit_box};
     both[1].at[1] = below + 0.001, both[1].half[1] = 0.001, both[1].restitution = e;
-    s = particle_at(x, none, none, 2);
+    const double skin = 32 * EPS * (both[1].at[1] + both[1].half[0] + both[1].half[1] + both[1].half[2]);
+    s = particle_at((double[]){x[0], x[1] + skin, x[2]}, none, none, 2);
     set(s, both, 2);
     run(s, SPRING_LEAPFROG, 0.01, 1);
     get(s, now, v);
