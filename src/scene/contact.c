@@ -25,7 +25,7 @@
  *              is lambda n, with the lambda for which the path ends on the surface. Late (in the second half of the step,
  *              at a second contact of the step, or after item 1): the path is projected to the tangent plane, and w
  *              loses its component into the collider. Where another body continues the face, as on a floor of boxes,
- *              the path ends on the tangent plane.
+ *              the path ends on the tangent plane. The same if a path along a face of a box hits another body.
  *           5. After a contact, the other colliders are tested with the changed path. A particle that is still inside at
  *              the end (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
  *              A pass moves it by at most the length of its path and the largest depth, because the tangent planes of
@@ -74,7 +74,7 @@ enum {
 /* Fractions of a step up to this size are rounding errors. */
 static const double least_fraction = 1e-13;
 
-/* Of the skin, in rounding errors of coordinates. It is four times slop_of(). */
+/* Of a skin, in rounding errors of coordinates. It is four times as many as in slop_of(). */
 static const double skin_thickness = 32;
 
 /* The cosine between normals of a custom body on the same face. */
@@ -742,7 +742,7 @@ typedef struct meeting {
     double time_left;   /* [s] of the step, after the contact */
     vector3 velocity;   /* [m/s] of the surface */
     bool walks;         /* the way is long compared with a custom body's thickness */
-    bool goes_on;       /* another body continues the face */
+    bool goes_on;       /* the path stays on the tangent plane: another body continues the face, or is hit */
 } meeting;
 
 enum { NO_CONTACT = 0, CONTACT = 1, CLEAR = 2 }; /* CLEAR: the path is known to end outside */
@@ -855,8 +855,26 @@ static bool passes_face(const contact_body *b, const meeting *m, double radius, 
     return false;
 }
 
-/* On an edge of a box, the contact is with the face that the path enters most. */
-static void choose_face(meeting *m, double radius)
+/* Whether another body is beside the chord's start, beyond the face of a box on axis a. */
+static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, int a, double side)
+{
+    const vector3 out = {a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
+    const vector3 x = place_out(&m->b->start, add_scaled(m->start, 4 * m->b->skin, out));
+    for (unsigned i = 0; i < s->count; i++) {
+        const contact_body *const b = &s->body[i];
+        near_point at;
+        if (i == m->index || (b->bits & p->bits) == 0 || is_custom(b->shape))
+            continue;
+        find_nearest(p, b, 0, place_in(&b->start, x), &at);
+        if (at.gap < 0)
+            return true;
+    }
+    return false;
+}
+
+/* At an edge of a box, chooses the face into which the path goes fastest, of those that no other body covers. radius: [m] of
+   the box and the particle */
+static void choose_face(const contact_setting *s, contact_particle *p, meeting *m, double radius)
 {
     const contact_body *const b = m->b;
     double most = 0;
@@ -864,7 +882,7 @@ static void choose_face(meeting *m, double radius)
     for (int a = 0; a < 3; a++) {
         const double side = copysign(1, component(m->start, a)), rate = side * component(m->way, a);
         const double gap = fabs(component(m->start, a)) - b->half[a] - radius;
-        if (!(gap >= least) || !(rate < most))
+        if (!(gap >= least) || !(rate < most) || is_covered(s, p, m, a, side))
             continue;
         most = rate;
         m->at.gap = gap;
@@ -883,7 +901,7 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->fraction = 0;
     find_nearest(p, b, 0, m->start, &m->at);
     if (b->skin > 0 && b->shape == SPRING_BOX && m->at.gap < -m->slop)
-        choose_face(m, b->radius + p->radius);
+        choose_face(s, p, m, b->radius + p->radius);
     m->start_depth =
         m->at.gap < -m->slop - b->skin ? -m->at.gap : 0; /* a particle may start on the body, in its skin */
     near_point there;
@@ -1417,7 +1435,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
 
 /* The index of a body that continues the face on which a path is pressed, as on a floor of boxes, and on which the path
    ends; or the number of bodies. Otherwise the particle would fall from the start of the step, and hit the edge of that
-   body. goes_on is set also if a path along the face hits another body, as a wall beside the floor. */
+   body. Sets goes_on, also if a path along the face hits another body, as a wall beside the floor. */
 static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_t nearby, meeting *m)
 {
     contact_particle straight = *p;
@@ -1441,6 +1459,7 @@ static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_
         }
         straight.d = subtract(end, p->x0);
         other.b = b;
+        other.index = i;
         m->goes_on = m->goes_on || (m->b->shape == SPRING_BOX && meet(s, &straight, &other) && other.fraction > 0);
     }
     return s->count;

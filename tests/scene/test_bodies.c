@@ -1979,31 +1979,61 @@ static void wall_on_a_floor(void)
     }
 }
 
-/* A particle rests in a corner of two planes and a floor that move together. */
+/* A particle rests in a corner of two planes and a floor that move together, in any direction. */
 static void corner_of_planes(void)
 {
-    for (int k = 0; k < 1000; k++) {
-        const double rate[3] = {random_uniform(-2, 2), random_uniform(-2, 2), random_uniform(-2, 2)};
-        const double at[3] = {random_uniform(-2, 2), random_uniform(-2, 2), random_uniform(-2, 2)},
-                     g[3] = {0, -gravity, 0};
-        const double x[3] = {at[0] + 0.01, at[1] + 0.01, at[2] + 0.01};
-        const double v[3] = {rate[0] - 1, rate[1], rate[2] - 1};
-        spring_collider c[3] = {
-            {.shape = SPRING_PLANE, .axis = {{1, 0, 0}}}, {.shape = SPRING_PLANE, .axis = {{0, 0, 1}}}, unit_box};
-        for (int i = 0; i < 3; i++) {
-            memcpy(c[i].at, at, sizeof at);
-            memcpy(c[i].velocity, rate, sizeof rate);
+    for (int k = 0; k < 2000; k++) {
+        double phi[3], axis[3][3], rate[3], at[3], g[3], x[3], v[3], now[3];
+        random_unit(phi, 3);
+        for (int a = 0; a < 3; a++)
+            turn(phi, unit_box.axis[a], axis[a]);
+        spring_collider c[3] = {{.shape = SPRING_PLANE}, {.shape = SPRING_PLANE}, unit_box};
+        memcpy(c[0].axis[0], axis[0], sizeof axis[0]);
+        memcpy(c[1].axis[0], axis[2], sizeof axis[2]);
+        memcpy(c[2].axis, axis, sizeof axis);
+        for (int a = 0; a < 3; a++) {
+            rate[a] = random_uniform(-2, 2);
+            at[a] = random_uniform(-2, 2);
+            g[a] = -gravity * axis[1][a];
+            x[a] = at[a] + 0.01 * (axis[0][a] + axis[1][a] + axis[2][a]);
+            v[a] = rate[a] - axis[0][a] - axis[2][a];
+            for (int i = 0; i < 3; i++) {
+                c[i].at[a] = at[a];
+                c[i].velocity[a] = rate[a];
+            }
+            /* the edges of the floor touch the planes */
+            c[2].at[a] += c[2].half[0] * axis[0][a] - c[2].half[1] * axis[1][a] + c[2].half[2] * axis[2][a];
         }
-        c[2].at[0] += c[2].half[0]; /* its edges touch the planes */
-        c[2].at[1] -= c[2].half[1];
-        c[2].at[2] += c[2].half[2];
         spring_scene *s = ball_at(x, v, g, 0, 3);
-        double now[3];
         set(s, c, 3);
         run(s, SPRING_LEAPFROG, frame, 60);
         spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
         for (int a = 0; a < 3; a++)
             CHECK(fabs(now[a] - at[a] - spring_scene_time(s) * rate[a]) <= 64 * EPS * 30, "in the corner, to the skin");
+        free(s);
+    }
+}
+
+/* A particle starts on the surface, where four boxes of a floor meet, and slides away. */
+static void start_on_a_seam(void)
+{
+    for (int k = 0; k < 100; k++) {
+        const double x[3] = {0}, g[3] = {0, -gravity, 0};
+        const double v[3] = {k % 3 ? random_uniform(-1, 1) : 0, 0, k % 3 != 1 ? random_uniform(-1, 1) : 0};
+        spring_collider c[4];
+        for (int i = 0; i < 4; i++) {
+            c[i] = unit_box;
+            c[i].at[0] = (i % 2 ? 1 : -1) * c[i].half[0];
+            c[i].at[1] = -c[i].half[1];
+            c[i].at[2] = (i / 2 ? 1 : -1) * c[i].half[2];
+        }
+        spring_scene *s = particle_at(x, v, g, 4);
+        double now[3];
+        set(s, c, 4);
+        run(s, with_contacts[k % method_count], frame, 60);
+        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+        for (int a = 0; a < 3; a++)
+            CHECK(fabs(now[a] - v[a] * spring_scene_time(s)) <= 64 * EPS * 8, "uniform motion, to the skin");
         free(s);
     }
 }
@@ -2388,6 +2418,7 @@ static const test tests[] = {
     {"room of boxes", room_of_boxes},
     {"wall on a floor", wall_on_a_floor},
     {"corner of planes", corner_of_planes},
+    {"start on a seam", start_on_a_seam},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
     {"damped bounces", damped_bounces},
