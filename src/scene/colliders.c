@@ -59,10 +59,10 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     }
 }
 
-/* [m] Edges of boxes may touch another body. So that rounding errors of a particle without radius on that body do not take
+/* [m] The skin. Edges of boxes may touch another body. So that rounding errors of a particle without radius on that body do not take
    it beyond the edge, all bodies have a skin, which is thicker than these errors. It is the same for all, so that the tops
-   of boxes side by side stay one face. Returns the size of the coordinates; 0: without a skin. */
-static double size_for_skin(const spring_scene *s)
+   of boxes side by side stay one face. */
+static double find_skin(const spring_scene *s)
 {
     const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
     double size = 0;
@@ -71,7 +71,7 @@ static double size_for_skin(const spring_scene *s)
         size = fmax(size, spring_contact_size(&c[i], s->layout.axes));
         boxes = boxes || c[i].shape == SPRING_BOX;
     }
-    return boxes && s->colliders > 1 ? size : 0;
+    return boxes && s->colliders > 1 ? spring_contact_skin(size, (double)SCALAR_EPSILON) : 0;
 }
 
 void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool all)
@@ -82,12 +82,11 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
     bool moves = all;
     for (uint32_t i = 0; i < s->colliders; i++)
         moves = moves || body[i].moves;
-    const double size = moves ? size_for_skin(s) : 0;
+    const double skin = moves ? find_skin(s) : 0;
     bounds->count = s->colliders;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
-            spring_contact_place(&body[i], &c[i], t0, t1, s->layout.axes);
-            spring_contact_add_skin(&body[i], size, (double)SCALAR_EPSILON);
+            spring_contact_place(&body[i], &c[i], skin, t0, t1, s->layout.axes);
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
     }

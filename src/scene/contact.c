@@ -12,7 +12,8 @@
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
  * Skin      In scenes with a box and another collider, the radii of all bodies are larger by rounding errors, so that
- *           particles without radius on one body are not beyond the edge of another: see size_for_skin().
+ *           particles without radius on one body are not beyond the edge of another: see find_skin() of
+ *           colliders.c.
  * Drift     For each contact, in the order of the times of impact:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity. If it is
  *              inside several colliders, it is moved out of the first, and then out of each that it is still inside.
@@ -355,15 +356,9 @@ double spring_contact_size(const spring_collider *c, uint32_t axes)
     return size;
 }
 
-void spring_contact_add_skin(contact_body *b, double size, double epsilon)
+double spring_contact_skin(double size, double epsilon)
 {
-    b->skin = skin_thickness * epsilon * size;
-    b->radius += b->skin;
-    b->reach += b->growth * b->skin;
-    for (int a = 0; a < 3; a++) {
-        b->low[a] -= rounded_up * b->growth * b->skin;
-        b->high[a] += rounded_up * b->growth * b->skin;
-    }
+    return skin_thickness * epsilon * size;
 }
 
 double spring_contact_motion(const contact_body *b)
@@ -386,7 +381,7 @@ static double rounding_scale_at(const contact_body *b, const body_pose *pose)
     return size;
 }
 
-void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1, uint32_t axes)
+void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double t0, double t1, uint32_t axes)
 {
     const bool flat = axes == 2, capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
     const bool spins = has_spin(c, flat), round = capsule || c->shape == SPRING_SPHERE;
@@ -397,7 +392,8 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
         .flat = flat,
         .bits = c->mask != 0 ? c->mask : UINT32_MAX,
         .half = {c->half[0], c->half[1], flat ? (double)INFINITY : c->half[2]},
-        .radius = plane ? 0 : c->radius,
+        .radius = (plane ? 0 : c->radius) + skin,
+        .skin = skin,
         .friction = c->friction,
         .restitution = c->restitution,
         .thickness = c->thickness,
@@ -855,11 +851,10 @@ static bool passes_face(const contact_body *b, const meeting *m, double radius, 
     return false;
 }
 
-/* Whether another body is beside the chord's start, beyond the face of a box on axis a. */
-static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, int a, double side)
+/* Whether another body is at the start of the chord, beyond the face of a box with this normal. */
+static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal)
 {
-    const vector3 out = {a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
-    const vector3 x = place_out(&m->b->start, add_scaled(m->start, 4 * m->b->skin, out));
+    const vector3 x = place_out(&m->b->start, add_scaled(m->start, 4 * m->b->skin, normal));
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
         near_point at;
@@ -877,16 +872,17 @@ static bool is_covered(const contact_setting *s, contact_particle *p, const meet
 static void choose_face(const contact_setting *s, contact_particle *p, meeting *m, double radius)
 {
     const contact_body *const b = m->b;
-    double most = 0;
     const double least = m->at.gap - m->slop;
+    double most = 0;
     for (int a = 0; a < 3; a++) {
-        const double side = copysign(1, component(m->start, a)), rate = side * component(m->way, a);
-        const double gap = fabs(component(m->start, a)) - b->half[a] - radius;
-        if (!(gap >= least) || !(rate < most) || is_covered(s, p, m, a, side))
+        const double side = component(m->start, a) < 0 ? -1 : 1;
+        const vector3 normal = {a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
+        const double rate = inner(normal, m->way), gap = inner(normal, m->start) - b->half[a] - radius;
+        if (!(gap >= least) || !(rate < most) || is_covered(s, p, m, normal))
             continue;
         most = rate;
         m->at.gap = gap;
-        m->at.normal = (vector3){a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
+        m->at.normal = normal;
     }
 }
 

@@ -108,15 +108,15 @@ SPRING_INTERNAL void spring_collider_orthonormalise(spring_collider *c, uint32_t
 /* Replaces a collider by its state t after it was set. */
 SPRING_INTERNAL void spring_collider_move(spring_collider *c, double t, uint32_t axes);
 
-/* Places a collider for a drift that starts and ends t0 and t1 after the collider was set. */
-SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1,
+/* Places a collider, with a skin [m], for a drift that starts and ends t0 and t1 after the collider was set. */
+SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double t0, double t1,
                                           uint32_t axes);
 
 /* [m] The size of coordinates of points of a collider, when it was set. */
 SPRING_INTERNAL double spring_contact_size(const spring_collider *c, uint32_t axes);
 
-/* Gives a collider that has just been placed a skin that is thicker than rounding errors of coordinates of this size. */
-SPRING_INTERNAL void spring_contact_add_skin(contact_body *b, double size, double epsilon);
+/* [m] A skin that is thicker than rounding errors of coordinates of this size. */
+SPRING_INTERNAL double spring_contact_skin(double size, double epsilon);
 
 /* [m] An upper bound on the displacements of the points of the core in the step; of a turning plane it is infinite. */
 SPRING_INTERNAL double spring_contact_motion(const contact_body *b);
