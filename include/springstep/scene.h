@@ -354,10 +354,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
- * in which the energy must not drift: without drag the energy error of smooth motion stays bounded. For one second of a
- * cloth with an error of 1e-3 at the end, it needs about as many force evaluations as RKN8, and fewer than half as many
- * as leapfrog (`spring-work --problem long-cloth`). In the first 0.25 s of the stiff cloth leapfrog needs fewer for
- * this error (`--problem stiff-cloth`). Drag is solved exactly together with the drift, so the order is still 6.
+ * in which the energy must not drift: without drag the energy error of smooth motion stays bounded. docs/methods.md
+ * compares the methods. Drag is solved exactly together with the drift, so the order is still 6.
  *
  * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4, eight for RKN8, eleven for SRKN6.
  * Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the next step. With explicitly damped
