@@ -101,6 +101,104 @@ static void others_change_nothing(void)
     CHECK(touched > runs, "contacts took place");
 }
 
+/* Another view of a scene: in units of 2^length m, 2^time s and 2^mass kg, and mirrored along an axis unless that is < 0. */
+typedef struct view {
+    int length, time, mass, mirrored;
+} view;
+
+static double seen(view w, double value, int length, int time, int axis)
+{
+    return ldexp(axis == w.mirrored ? -value : value, length * w.length + time * w.time);
+}
+
+static void change_collider(spring_collider *c, view w)
+{
+    enum { none = 3 };
+    c->radius = seen(w, c->radius, 1, 0, none);
+    for (int a = 0; a < 3; a++) {
+        const int frame = c->shape == SPRING_BOX ? none : a; /* the axes of a box are mirrored as well */
+        c->at[a] = seen(w, c->at[a], 1, 0, a);
+        c->to[a] = seen(w, c->to[a], 1, 0, a);
+        c->half[a] = seen(w, c->half[a], 1, 0, none);
+        c->velocity[a] = seen(w, c->velocity[a], 1, -1, a);
+        c->velocity_to[a] = seen(w, c->velocity_to[a], 1, -1, a);
+        c->surface[a] = seen(w, c->surface[a], 1, -1, frame);
+        c->acceleration[a] = seen(w, c->acceleration[a], 1, -2, a);
+        const int turns = w.mirrored < 0 || a == w.mirrored ? 1 : -1; /* axial vectors */
+        c->spin[a] = turns * seen(w, c->spin[a], 0, -1, none);
+        c->spin_acceleration[a] = turns * seen(w, c->spin_acceleration[a], 0, -2, none);
+        for (int i = 0; i < 3; i++)
+            c->axis[i][a] = seen(w, c->axis[i][a], 0, 0, a);
+    }
+}
+
+static void change_model(model *m, view w)
+{
+    const size_t axes = m->def.axes;
+    for (size_t i = 0; i < m->def.particles * axes; i++) {
+        m->position[i] = seen(w, m->position[i], 1, 0, (int)(i % axes));
+        m->velocity[i] = seen(w, m->velocity[i], 1, -1, (int)(i % axes));
+    }
+    for (size_t i = 0; i < m->def.particles; i++)
+        m->mass[i] = ldexp(m->mass[i], w.mass);
+    for (size_t i = 0; i < m->def.links; i++) {
+        m->link[i].rest = ldexp(m->link[i].rest, w.length);
+        m->link[i].stiffness = ldexp(m->link[i].stiffness, w.mass - 2 * w.time);
+        m->link[i].damping = ldexp(m->link[i].damping, w.mass - w.time);
+    }
+    for (int a = 0; a < 3; a++)
+        m->def.gravity[a] = seen(w, m->def.gravity[a], 1, -2, a);
+    m->def.mass_all = ldexp(m->def.mass_all, w.mass);
+    m->def.drag = ldexp(m->def.drag, w.mass - w.time);
+    m->def.particle_radius = ldexp(m->def.particle_radius, w.length);
+}
+
+/* Units and mirrors change no bit of a scene with contacts: no constant has a unit, and no direction is preferred. The
+   unit of damping is an even power of two, because heavy damping takes its root. */
+static void units_and_mirrors(void)
+{
+    enum { runs = 1500, steps = 20, bodies = 3, furthest = 4 };
+    static model m;
+    static double x[2][3 * most], v[2][3 * most];
+    size_t touched = 0;
+    for (int run = 0; run < runs; run++) {
+        const uint32_t axes = 2 + (uint32_t)(random_bits() % 2);
+        view w = {.mirrored = (int)(random_bits() % axes)};
+        if (run % 2 == 0) {
+            w.length = (int)(random_bits() % (2 * furthest + 1)) - furthest;
+            w.time = (int)(random_bits() % (2 * furthest + 1)) - furthest;
+            w.mass = w.time + 2 * (int)(random_bits() % furthest);
+            w.mirrored = -1;
+        }
+        const double dt = random_log(0.005, 0.05), heavy = random_bits() % 3 == 0 ? random_log(1, 1e3) : 1;
+        const spring_method method = with_contacts[random_bits() % method_count];
+        spring_collider c[bodies];
+        build(&m, (uint32_t[]){4, 3, axes - 1}, axes, (unsigned)(random_bits() % feature_masks));
+        for (int i = 0; i < bodies; i++)
+            c[i] = random_collider(axes);
+        for (size_t i = 0; i < m.def.links && method == SPRING_LEAPFROG; i++)
+            m.link[i].damping *= heavy;
+        m.def.colliders = bodies, m.def.methods = 1u << method, m.def.particle_radius = random_bits() % 2 ? 0.1 : 0;
+        for (int k = 0; k < 2; k++) {
+            spring_scene *s = scene_of(&m.def);
+            CHECK(spring_scene_set_colliders(s, c, bodies) == SPRING_OK, "valid colliders");
+            CHECK(spring_scene_advance(s, method, ldexp(dt, k * w.time), steps) == SPRING_OK, "finite");
+            touched += count_touching(s, m.def.particles);
+            spring_scene_get(s, SPRING_POSITION, x[k], 0, 0, m.def.particles);
+            spring_scene_get(s, SPRING_VELOCITY, v[k], 0, 0, m.def.particles);
+            free(s);
+            change_model(&m, w);
+            for (int i = 0; i < bodies; i++)
+                change_collider(&c[i], w);
+        }
+        for (size_t i = 0; i < m.def.particles * axes; i++)
+            CHECK(x[1][i] == seen(w, x[0][i], 1, 0, (int)(i % axes)) &&
+                      v[1][i] == seen(w, v[0][i], 1, -1, (int)(i % axes)),
+                  w.mirrored < 0 ? "the same motion in other units" : "the same motion in a mirror");
+    }
+    CHECK(touched > runs, "contacts took place");
+}
+
 /* The speed limit counts what is left after the contact, and a moving collider may exceed it. */
 static void speed_limit(void)
 {
@@ -596,6 +694,7 @@ static void pressed_by_damping(void)
 static const test tests[] = {
     {"neighbours in a SIMD vector", neighbours_change_nothing},
     {"other particles", others_change_nothing},
+    {"units and mirrors", units_and_mirrors},
     {"speed limit", speed_limit},
     {"bad colliders", bad_colliders},
     {"axes from floats", axes_from_floats},
