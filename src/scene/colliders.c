@@ -59,30 +59,13 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     }
 }
 
-/* [m] The skin. Edges of boxes may touch another body. So that rounding errors of a particle without radius on that body do not take
-   it beyond the edge, all bodies have a skin, which is thicker than these errors. It is the same for all, so that the tops
-   of boxes side by side stay one face. */
-static double find_skin(const spring_scene *s)
-{
-    const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
-    double size = 0;
-    bool boxes = false;
-    for (uint32_t i = 0; i < s->colliders; i++) {
-        size = fmax(size, spring_contact_size(&c[i], s->layout.axes));
-        boxes = boxes || c[i].shape == SPRING_BOX;
-    }
-    return boxes && s->colliders > 1 ? spring_contact_skin(size, (double)SCALAR_EPSILON) : 0;
-}
-
 void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool all)
 {
     const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
     contact_body *const body = scene_memory(s, ARRAY_PLACED);
     collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
-    bool moves = all;
-    for (uint32_t i = 0; i < s->colliders; i++)
-        moves = moves || body[i].moves;
-    const double skin = moves ? find_skin(s) : 0;
+    const double skin =
+        all ? spring_contact_skin(c, s->colliders, (double)SCALAR_EPSILON, s->layout.axes) : body[0].skin;
     bounds->count = s->colliders;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {

@@ -11,9 +11,9 @@
  *           at the end of the step. The path is defined as the chord y0 + theta (y1 - y0). The gap to a convex body
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
- * Skin      In scenes with a box and another collider, the radii of all bodies are larger by rounding errors, so that
- *           particles without radius on one body are not beyond the edge of another: see find_skin() of
- *           colliders.c.
+ * Skin      In scenes with a box and another collider near it, all bodies are larger by 32 rounding errors, so that a
+ *           particle without radius on one of them is not beyond the edge of another. The skin is the same for all, so
+ *           that the tops of boxes side by side stay one face.
  * Drift     For each contact, in the order of the times of impact:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity. If it is
  *              inside several colliders, it is moved out of the first, and then out of each that it is still inside.
@@ -77,6 +77,10 @@ static const double least_fraction = 1e-13;
 
 /* Of a skin, in rounding errors of coordinates. It is four times as many as in slop_of(). */
 static const double skin_thickness = 32;
+
+/* The part of its skin by which the edges of a box are rounded. The rest makes the box wider, so that the seam of two
+   boxes side by side lies on the faces of both. */
+static const double skin_rounding = 0.25;
 
 /* The cosine between normals of a custom body on the same face. */
 static const double same_face = 0.9;
@@ -342,9 +346,9 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     bound_with_box(b, rounded_up * (b->reach + b->growth * shift));
 }
 
-double spring_contact_size(const spring_collider *c, uint32_t axes)
+/* [m] The largest size of the numbers that the surface of a collider follows from. */
+static double size_of(const spring_collider *c, bool flat)
 {
-    const bool flat = axes == 2;
     const vector3 at = vector_of(c->at, flat), n = vector_of(c->axis[0], flat);
     if (c->shape == SPRING_PLANE)
         return fabs(inner(n, at)) * size_sum(n);
@@ -356,8 +360,40 @@ double spring_contact_size(const spring_collider *c, uint32_t axes)
     return size;
 }
 
-double spring_contact_skin(double size, double epsilon)
+/* [m] Radius of a sphere about `at` that contains a collider. 0: a plane, whose distance is not that of `at` */
+static double extent_of(const spring_collider *c, bool flat)
 {
+    switch (c->shape) {
+    case SPRING_CAPSULE:
+        return c->radius + length3(subtract(vector_of(c->to, flat), vector_of(c->at, flat)));
+    case SPRING_BOX:
+        return c->radius + length3(vector_of(c->half, flat));
+    case SPRING_CUSTOM:
+        return c->bound > 0 ? c->radius + c->bound : (double)INFINITY;
+    case SPRING_SPHERE:
+        return c->radius;
+    case SPRING_PLANE:
+        break;
+    }
+    return 0;
+}
+
+/* Whether a collider may touch a box, or come close to it before colliders are set again. */
+static bool is_near(const spring_collider *box, const spring_collider *c, bool flat)
+{
+    const double reach = 2 * (extent_of(box, flat) + extent_of(c, flat));
+    const vector3 arm = subtract(vector_of(box->at, flat), vector_of(c->at, flat));
+    return (c->shape == SPRING_PLANE ? inner(vector_of(c->axis[0], flat), arm) : length3(arm)) <= reach;
+}
+
+double spring_contact_skin(const spring_collider *c, unsigned count, double epsilon, uint32_t axes)
+{
+    const bool flat = axes == 2;
+    double size = 0;
+    for (unsigned i = 0; i < count; i++)
+        for (unsigned k = 0; c[i].shape == SPRING_BOX && k < count; k++)
+            if (k != i && is_near(&c[i], &c[k], flat))
+                size = fmax(size, fmax(size_of(&c[i], flat), size_of(&c[k], flat)));
     return skin_thickness * epsilon * size;
 }
 
@@ -386,13 +422,14 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double skin
     const bool flat = axes == 2, capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
     const bool spins = has_spin(c, flat), round = capsule || c->shape == SPRING_SPHERE;
     const vector3 velocity = vector_of(c->velocity, flat), accel = vector_of(c->acceleration, flat);
+    const double wider = c->shape == SPRING_BOX ? (1 - skin_rounding) * skin : 0;
     *b = (contact_body){
         .shape = c->shape,
         .turns = spins && !round,
         .flat = flat,
         .bits = c->mask != 0 ? c->mask : UINT32_MAX,
-        .half = {c->half[0], c->half[1], flat ? (double)INFINITY : c->half[2]},
-        .radius = (plane ? 0 : c->radius) + skin,
+        .half = {c->half[0] + wider, c->half[1] + wider, flat ? (double)INFINITY : c->half[2] + wider},
+        .radius = (plane ? 0 : c->radius) + (skin - wider),
         .skin = skin,
         .friction = c->friction,
         .restitution = c->restitution,
@@ -721,16 +758,22 @@ SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, slide_
 
 /* -------------------------------------------------------------------------------------------------------- one collider */
 
+/* The contacts of a particle in a step. */
+typedef struct contact_history {
+    unsigned count;
+    unsigned body[contact_rounds];  /* the number of bodies if the particle started inside */
+    vector3 normal[contact_rounds]; /* in the scene */
+} contact_history;
+
 /* A contact of a particle with a body during a drift. */
 typedef struct meeting {
     const contact_body *b;
     unsigned index;
-    bool again;             /* the particle has touched a collider in this step */
-    const vector3 *touched; /* normals of the earlier contacts of this step, in the scene */
-    int contacts;           /* their number */
-    double slop;            /* [m] */
-    vector3 start, way;     /* [m] in the frame: the chord */
-    near_point at;          /* at the time of the contact */
+    bool again;                     /* the particle has touched a collider in this step */
+    const contact_history *earlier; /* NULL: none */
+    double slop;                    /* [m] */
+    vector3 start, way;             /* [m] in the frame: the chord */
+    near_point at;                  /* at the time of the contact */
     double fraction, gap;
     double start_depth; /* [m] inside the body at the start, if that is more than the slop; else 0 */
     vector3 place;      /* in the frame */
@@ -840,8 +883,8 @@ static bool find_custom_impact(contact_particle *p, meeting *m)
 static bool passes_face(const contact_body *b, const meeting *m, double radius, double flush)
 {
     const double down = m->at.gap > m->slop ? flush : m->slop;
-    for (int k = 0; k < m->contacts && b->shape == SPRING_BOX; k++) {
-        const vector3 n = direction_in(&b->end, m->touched[k]);
+    for (unsigned k = 0; m->earlier != NULL && k < m->earlier->count && b->shape == SPRING_BOX; k++) {
+        const vector3 n = direction_in(&b->end, m->earlier->normal[k]);
         for (int a = 0; a < 3; a++) {
             const double side = component(n, a), above = side * component(m->start, a) - b->half[a] - radius;
             if (fabs(side) > same_plane && above >= -flush && side * component(m->way, a) >= -fmax(above, 0) - down)
@@ -1389,8 +1432,25 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     return nearby;
 }
 
+/* Has a particle leave a box through the face that it has touched in this step. If others press it deeply into a thin box,
+   the opposite face may be nearer. */
+static void keep_side(const contact_history *earlier, const contact_body *b, vector3 x, double radius, constraint *c)
+{
+    for (unsigned i = 0; i < earlier->count && b->shape == SPRING_BOX; i++) {
+        const vector3 n = earlier->normal[i], in_frame = direction_in(&b->end, n);
+        if (earlier->body[i] != c->index || !(inner(n, c->n) < 0))
+            continue;
+        const double surface = fabs(in_frame.x) * b->half[0] + fabs(in_frame.y) * b->half[1] +
+                               (b->flat ? 0 : fabs(in_frame.z) * b->half[2]) + b->radius + radius;
+        c->n = n;
+        c->least = surface - inner(n, subtract(x, b->end.at));
+        return;
+    }
+}
+
 /* Item 5, after all colliders. clear: bits of the colliders outside of which the path is known to end */
-static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby, uint32_t clear)
+static void leave(const contact_setting *s, contact_particle *p, const contact_history *earlier, uint32_t nearby,
+                  uint32_t clear)
 {
     constraint c[most_constraints];
     uint32_t inside = 0;
@@ -1405,6 +1465,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby
             const unsigned before = count,
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
+                keep_side(earlier, &s->body[i], x, p->radius, &c[k]);
                 const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
                 deepest = deep ? fmax(deepest, c[k].least) : deepest;
                 inside |= (uint32_t)deep << i;
@@ -1469,34 +1530,58 @@ static bool is_before(const meeting *m, const meeting *other)
     return size_sum(m->at.normal) == 1 && size_sum(other->at.normal) > 1;
 }
 
+/* The first contact of a path with some bodies, in one of each[2]; NULL: none. Adds the bits of the bodies that it passes
+   outside to clear. */
+static meeting *first_contact(const contact_setting *s, contact_particle *p, const contact_history *earlier,
+                              uint32_t bodies, meeting each[2], uint32_t *clear)
+{
+    meeting *first = NULL, *next = &each[0];
+    for (unsigned i = 0; i < s->count; i++) {
+        const uint32_t bit = UINT32_C(1) << i;
+        if ((bodies & bit) == 0)
+            continue;
+        next->b = &s->body[i];
+        next->index = i;
+        next->again = earlier->count > 0;
+        next->earlier = earlier;
+        if (!meet(s, p, next))
+            *clear |= s->body[i].degenerate ? 0 : bit;
+        else if (first == NULL || is_before(next, first)) {
+            first = next;
+            next = first == &each[0] ? &each[1] : &each[0];
+        }
+    }
+    return first;
+}
+
+/* Ends a path at a further contact, and leaves its impact to the next step. A path that bounces many times between thin
+   bodies would otherwise pass through one of them. */
+static void end_at_contact(const contact_setting *s, contact_particle *p, const meeting *m)
+{
+    const vector3 x = add(p->x0, p->d), w = p->w;
+    p->d = scale(m->fraction, p->d);
+    const vector3 x1 = add(p->x0, p->d);
+    spring_contact_record(s, p, m->index, &x, &w, &x1, &w);
+}
+
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
     uint32_t nearby = p->nearby == UINT32_MAX ? near_path(s, p) : p->nearby, clear = 0, last = 0;
-    vector3 normal[contact_rounds]; /* of the contacts */
+    contact_history earlier = {.count = 0};
     p->touched = 0;
-    for (int round = 0; round < contact_rounds; round++) {
+    for (;;) {
         meeting each[2];
-        meeting *first = NULL, *next = &each[0]; /* first: of all colliders */
-        for (unsigned i = 0; i < s->count; i++) {
-            const uint32_t bit = UINT32_C(1) << i;
-            if ((nearby & ~clear & ~last & bit) == 0)
-                continue;
-            next->b = &s->body[i];
-            next->index = i;
-            next->again = round > 0;
-            next->touched = normal;
-            next->contacts = round;
-            if (!meet(s, p, next))
-                clear |= s->body[i].degenerate ? 0 : bit;
-            else if (first == NULL || is_before(next, first)) {
-                first = next;
-                next = first == &each[0] ? &each[1] : &each[0];
-            }
-        }
+        meeting *const first = first_contact(s, p, &earlier, nearby & ~clear & ~last, each, &clear);
         if (first == NULL)
             break;
+        if (earlier.count == contact_rounds) {
+            if (first->fraction > least_fraction)
+                end_at_contact(s, p, first);
+            break;
+        }
         last = UINT32_C(1) << first->index;
-        put(&normal[round], first->n_end);
+        earlier.body[earlier.count] = first->start_depth > 0 ? s->count : first->index;
+        put(&earlier.normal[earlier.count++], first->n_end);
         const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;
         const vector3 before = p->d;
         const uint32_t cleared = (collide(s, p, first) & CLEAR) != 0 ? last : 0;
@@ -1508,7 +1593,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         p->touched |= beyond ? UINT32_C(1) << next_one : last;
         nearby = near_path(s, p) | p->touched;
     }
-    leave(s, p, nearby, clear);
+    leave(s, p, &earlier, nearby, clear);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- queries */

@@ -49,7 +49,7 @@ typedef struct contact_body {
     bool flat;       /* two axes */
     uint32_t bits;   /* of the masks of particles */
     double half[3], radius, friction, restitution, thickness;
-    double skin;           /* [m] part of `radius` */
+    double skin;           /* [m] part of `radius`, of a box mostly of `half` */
     double rounding_scale; /* [m] of the coordinates that a gap is computed from */
     vector3 surface;       /* [m/s] in the frame; of spheres and capsules, in the scene */
     spring_gap_fn *gap;
@@ -112,11 +112,8 @@ SPRING_INTERNAL void spring_collider_move(spring_collider *c, double t, uint32_t
 SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double t0, double t1,
                                           uint32_t axes);
 
-/* [m] The size of coordinates of points of a collider, when it was set. */
-SPRING_INTERNAL double spring_contact_size(const spring_collider *c, uint32_t axes);
-
-/* [m] A skin that is thicker than rounding errors of coordinates of this size. */
-SPRING_INTERNAL double spring_contact_skin(double size, double epsilon);
+/* [m] The skin of colliders: see contact.c. 0 if none is near a box */
+SPRING_INTERNAL double spring_contact_skin(const spring_collider *c, unsigned count, double epsilon, uint32_t axes);
 
 /* [m] An upper bound on the displacements of the points of the core in the step; of a turning plane it is infinite. */
 SPRING_INTERNAL double spring_contact_motion(const contact_body *b);

@@ -2038,6 +2038,108 @@ static void start_on_a_seam(void)
     }
 }
 
+/* A particle falls on the seam of two boxes of a turned floor, and bounces: it moves along the normal alone. */
+static void fall_on_a_seam(void)
+{
+    double sideways = 0;
+    for (int k = 0; k < 2000; k++) {
+        const double phi[3] = {random_uniform(-3, 3), random_uniform(-3, 3), random_uniform(-3, 3)}, none[3] = {0};
+        const double height = random_uniform(0.5, 2), across = random_uniform(-0.5, 0.5), far = random_log(0.1, 30);
+        double axis[3][3], x[3], g[3], now[3], v[3];
+        spring_collider c[2] = {unit_box, unit_box};
+        for (int i = 0; i < 3; i++)
+            turn(phi, unit_box.axis[i], axis[i]);
+        for (int a = 0; a < 3; a++) {
+            g[a] = -gravity * axis[1][a];
+            x[a] = far * axis[2][a] + height * axis[1][a] + across * axis[0][a] + (a == 0 ? far : 0);
+            for (int i = 0; i < 2; i++) {
+                for (int b = 0; b < 3; b++)
+                    c[i].axis[b][a] = axis[b][a];
+                c[i].at[a] = (far + (i ? 2 : -2)) * axis[2][a] - 0.1 * axis[1][a] + (a == 0 ? far : 0);
+                c[i].restitution = (k % 3) / 2.;
+            }
+        }
+        spring_scene *s = particle_at(x, none, g, 2);
+        set(s, c, 2);
+        run(s, with_contacts[k % method_count], frame / 4, 200);
+        get(s, now, v);
+        const double fall = sqrt(2 * gravity * height);
+        sideways = fmax(sideways, fmax(fabs(dot(v, axis[0])), fabs(dot(v, axis[2]))) / (fall * (1 + far)));
+        free(s);
+    }
+    CHECK_BELOW(sideways, 256 * EPS, "speed along the floor, in units of the impact and of the coordinates: 200 steps");
+}
+
+/* Particles slide on a plate into the wedge under a ball that sits in it, and are pressed into the plate by more than half
+   of its thickness. Then fast particles bounce many times in a step between thin walls. */
+static void thin_plates(void)
+{
+    for (int k = 0; k < 1000; k++) {
+        const double half = random_log(5e-4, 5e-3), over = random_uniform(0.05, 0.25), thrown = random_log(1, 50),
+                     x[3] = {sqrt(0.09 - over * over) + random_uniform(0.15, 0.17), 0.001, 0}, v[3] = {-thrown, 0, 0},
+                     g[3] = {0, -gravity, 0};
+        spring_collider c[2] = {unit_box, {.shape = SPRING_SPHERE, .at = {0, over, 0}, .radius = 0.3}};
+        c[0].half[1] = half;
+        c[0].at[1] = -half;
+        c[0].restitution = c[1].restitution = k % 4 ? 0 : random_uniform(0, 1);
+        double now[3], speed[3];
+        spring_scene *s = particle_at(x, v, g, 2);
+        set(s, c, 2);
+        run(s, with_contacts[k % method_count], random_log(1. / 960, frame), 60);
+        get(s, now, speed);
+        CHECK(now[1] > -half || fabs(now[0]) > unit_box.half[0] || fabs(now[2]) > unit_box.half[2],
+              "a particle in a wedge is not pressed through the plate");
+        free(s);
+    }
+    for (int k = 0; k < 400; k++) {
+        const double reach = random_uniform(0.3, 1), half = 1e-3, fastest = random_log(10, 500), none[3] = {0};
+        spring_collider c[6];
+        double x[3], v[3], now[3], speed[3];
+        for (int i = 0; i < 6; i++) {
+            c[i] = unit_box;
+            c[i].restitution = k % 2 ? 1 : random_uniform(0, 1);
+            for (int a = 0; a < 3; a++)
+                c[i].half[a] = a == i / 2 ? half : reach + 2 * half;
+            c[i].at[i / 2] = (i % 2 ? 1 : -1) * (reach + half);
+        }
+        for (int a = 0; a < 3; a++) {
+            x[a] = random_uniform(-0.9, 0.9) * reach;
+            v[a] = random_uniform(-1, 1) * fastest;
+        }
+        spring_scene *s = particle_at(x, v, none, 6);
+        set(s, c, 6);
+        run(s, with_contacts[k % method_count], frame, 30);
+        get(s, now, speed);
+        for (int a = 0; a < 3; a++)
+            CHECK(fabs(now[a]) <= reach + 32 * EPS, "a particle that bounces often in a step stays between the walls");
+        free(s);
+    }
+}
+
+/* Colliders that wait far away for their use do not change how a particle rests on a box. */
+static void waiting_colliders(void)
+{
+    const double x[3] = {0}, v[3] = {0}, g[3] = {0, -gravity, 0};
+    double alone[3], now[3], speed[3];
+    for (int k = 0; k < 4; k++) {
+        spring_collider c[2] = {unit_box, unit_box};
+        c[0].at[1] = -unit_box.half[1];
+        c[1].shape = (spring_shape[]){SPRING_BOX, SPRING_PLANE, SPRING_SPHERE, SPRING_CAPSULE}[k];
+        c[1].axis[0][0] = c[1].shape == SPRING_PLANE ? 0 : 1;
+        c[1].axis[0][1] = c[1].shape == SPRING_PLANE ? 1 : 0;
+        c[1].radius = 1;
+        c[1].at[1] = c[1].to[1] = -1e5;
+        for (uint32_t count = 1; count <= 2; count++) {
+            spring_scene *s = particle_at(x, v, g, 2);
+            set(s, c, count);
+            run(s, SPRING_LEAPFROG, frame, 10);
+            get(s, count == 1 ? alone : now, speed);
+            free(s);
+        }
+        CHECK_BITS(now[1], alone[1], "on the box");
+    }
+}
+
 /* Two particles on a damped link, with the same velocity v, which changes in a step of 0.01 s with the plane y = 0. */
 static void step_of_pair(const double x[3], double v[3], const double g[3], const spring_collider *c, double dt_G,
                          double impulse[3])
@@ -2419,6 +2521,9 @@ static const test tests[] = {
     {"wall on a floor", wall_on_a_floor},
     {"corner of planes", corner_of_planes},
     {"start on a seam", start_on_a_seam},
+    {"fall on a seam", fall_on_a_seam},
+    {"thin plates", thin_plates},
+    {"waiting colliders", waiting_colliders},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
     {"damped bounces", damped_bounces},
