@@ -1522,14 +1522,6 @@ static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_
     return s->count;
 }
 
-/* At the start of the step, a face comes before the edge of a box: pressed on the face, a path may pass the edge. */
-static bool is_before(const meeting *m, const meeting *other)
-{
-    if (m->fraction != other->fraction || m->fraction != 0 || other->b->shape != SPRING_BOX)
-        return m->fraction < other->fraction;
-    return size_sum(m->at.normal) == 1 && size_sum(other->at.normal) > 1;
-}
-
 /* The first contact of a path with some bodies, in one of each[2]; NULL: none. Adds the bits of the bodies that it passes
    outside to clear. */
 static meeting *first_contact(const contact_setting *s, contact_particle *p, const contact_history *earlier,
@@ -1546,7 +1538,7 @@ static meeting *first_contact(const contact_setting *s, contact_particle *p, con
         next->earlier = earlier;
         if (!meet(s, p, next))
             *clear |= s->body[i].degenerate ? 0 : bit;
-        else if (first == NULL || is_before(next, first)) {
+        else if (first == NULL || next->fraction < first->fraction) {
             first = next;
             next = first == &each[0] ? &each[1] : &each[0];
         }

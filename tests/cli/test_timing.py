@@ -46,11 +46,11 @@ def test_forces(work):
 
 
 def cheapest(rows, error, among):
-    """Time, and by whom, among the rows that are exact enough, and so is the next finer one."""
+    """Time, and by whom, among the rows with stable steps that are exact enough, and so is the next finer one."""
     sweep = [row for row in rows if row['effort'] == 'sweep' and among(row['solver'])]
     finer = [b if a['solver'] == b['solver'] else a for a, b in zip(sweep, [*sweep[1:], sweep[-1]])]
     times = [(float(row['time_s']), row['solver']) for row, next_one in zip(sweep, finer)
-             if max(float(row['error']), float(next_one['error'])) <= error]
+             if max(float(row['error']), float(next_one['error'])) <= error and not float(row['stable_fraction']) >= 1]
     least = min(times, default=(math.nan, ''))[0]
     return f'{least:.4g}', {solver for time, solver in times if time == least} or {'none'}
 

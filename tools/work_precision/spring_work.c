@@ -71,7 +71,7 @@ static const cli_program program = {
         "written for sheets only. steps: scenes are released at rest and run for a minute or longer, with steps\n"
         "of several fractions of the stable step.",
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
-               "stretch",
+               "stretch stable_fraction",
     .meaning =
         "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"
         "time_s is the shortest of up to five loops, without setup. error is |(x, v/omega) - exact| relative\n"
@@ -82,9 +82,11 @@ static const cli_program program = {
         "fixed steps. energy_error is relative to the initial energy, or for a scene to the final kinetic\n"
         "energy (nan if a callback adds forces). uncertainty is the uncertainty of the exact final state of a\n"
         "scene. An error of up to five times this value is an upper bound, and is not resolved. stretch is\n"
-        "the largest length/rest length of a link, minus 1.\n\n"
+        "the largest length/rest length of a link, minus 1. stable_fraction is the step divided by the stable step\n"
+        "of the library (nan for other solvers).\n\n"
         "With --table: for each error, the cheapest measured row whose error, and the error of the next finer\n"
-        "row if there is one, is not larger. solver, dt_s, time_s and steps are from the steppers. peer and\n"
+        "row if there is one, is not larger. solver, dt_s, time_s and steps are from the steppers, with steps\n"
+        "below the stable step. peer and\n"
         "peer_time_s are from GSL, SUNDIALS and odeint. ratio is peer_time_s/time_s. exact_time_s is the time\n"
         "of the exact solution. nan means none.\n\n"
         "With --forces: time_ns is the time of one force evaluation. springstep is a step of leapfrog, or of\n"
@@ -124,16 +126,17 @@ typedef struct work_row {
     const work_solver *solver;
     uint64_t steps;
     double time, error;
+    double fraction; /* of the stable step; NaN: not a stepper */
 } work_row;
 
 static work_row rows[MOST_ROWS]; /* of the current problem */
 static size_t row_count;
 
-static void remember(const work_solver *s, uint64_t steps, double time, double error)
+static void remember(const work_solver *s, uint64_t steps, double time, double error, double fraction)
 {
     if (row_count == MOST_ROWS)
         cli_fail(CLI_FAILED, "more than %d rows of one problem", MOST_ROWS);
-    rows[row_count++] = (work_row){s, steps, time, error};
+    rows[row_count++] = (work_row){s, steps, time, error, fraction};
 }
 
 /* The time of a run [s], the shortest of several loops. Long runs are interrupted by other processes, so they use the
@@ -157,6 +160,17 @@ static double time_of(work *w, const work_solver *s, work_effort e, double first
     return best;
 }
 
+/* The step of a stepper of the library, divided by its stable step. NaN for other solvers. */
+static double stable_fraction(const work *w, const work_solver *s, uint64_t steps)
+{
+    if (s->side != WORK_STEPPER)
+        return NAN;
+    const bool scene = w->problem->kind == WORK_SCENE;
+    const double stable =
+        scene ? spring_scene_stable_step(w->fresh, s->method) : spring_stable_step(&w->problem->p, s->method);
+    return w->duration / (double)steps / stable;
+}
+
 /* Writes a row if the run succeeded. Returns the time of the first run [s]. */
 static double measure(cli_table *table, work *w, const work_solver *s, work_effort e, const char *why)
 {
@@ -169,11 +183,11 @@ static double measure(cli_table *table, work *w, const work_solver *s, work_effo
         const uint64_t evaluations =
             scene && s->side == WORK_STEPPER ? work_count(w, s->method, e.steps) : r.evaluations;
         const double error_x = scene ? NAN : fabs(y[0] - w->exact[0]), energy_error = work_energy_error(w, y);
-        const double time = time_of(w, s, e, r.spent, y);
-        cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g\t%.6g",
+        const double time = time_of(w, s, e, r.spent, y), fraction = stable_fraction(w, s, r.steps);
+        cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g\t%.6g\t%.4g",
                 w->problem->name, s->name, r.steps, evaluations, time, error, error_x, why, e.tolerance, energy_error,
-                w->uncertainty, work_stretch(w, y));
-        remember(s, r.steps, time, error);
+                w->uncertainty, work_stretch(w, y), fraction);
+        remember(s, r.steps, time, error, fraction);
     }
     free(y);
     return r.spent;
@@ -212,10 +226,15 @@ static void sweep_steps(cli_table *table, work *w, const work_solver *s)
     const double finest = quick && !study ? fmax(w->finest, w->duration / 2e6) : w->finest;
     const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* infinite for a scene */
     const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED || s->side == WORK_IMPLICIT || w->damped;
+    /* The longest stable step is measured unless that takes far longer. NaN or infinity: there is none. */
+    const double stable = floor(stable_fraction(w, s, 1)) + 1, longer = 8;
     double n = ceil(any_step ? fmin(w->duration / w->coarsest, 60 * w->duration) : w->duration / w->coarsest),
            spent = 0;
-    for (; n < most * 0.999 && goes_on(w, s, spent); n = ceil(n * factor))
+    while (n < most * 0.999 && (goes_on(w, s, spent) || (n <= stable && spent <= longer * longest(w)))) {
         spent = measure(table, w, s, (work_effort){.steps = (uint64_t)n}, "sweep");
+        const double next = ceil(n * factor);
+        n = n < stable && stable < next ? stable : next;
+    }
     if (goes_on(w, s, spent))
         measure(table, w, s, (work_effort){.steps = (uint64_t)most}, "sweep");
 }
@@ -281,11 +300,13 @@ static bool is_enough(size_t i, double error)
     return rows[i].error <= error && (last || rows[i + 1].error <= error);
 }
 
+/* Of the steppers of the library, with stable steps only: longer ones may be accurate at first and then explode. */
 static const work_row *cheapest(work_side side, double error)
 {
     const work_row *best = NULL;
     for (size_t i = 0; i < row_count; i++)
-        if (rows[i].solver->side == side && is_enough(i, error) && (best == NULL || rows[i].time < best->time))
+        if (rows[i].solver->side == side && is_enough(i, error) && !(rows[i].fraction >= 1) &&
+            (best == NULL || rows[i].time < best->time))
             best = &rows[i];
     return best;
 }
