@@ -179,7 +179,7 @@ def long_runs():
 
 
 ERRORS = [f'1e-{digits}' for digits in range(1, 11)]
-NAMES = {'leapfrog': 'leapfrog', 'rk4': 'RK4', 'rkn8': 'RKN8', 'srkn6': 'SRKN6', 'none': '–'}
+NAMES = {'euler': 'Euler', 'symplectic-euler': 'symplectic Euler', 'leapfrog': 'leapfrog', 'rk4': 'RK4', 'rkn8': 'RKN8', 'srkn6': 'SRKN6', 'none': '–'}
 
 
 def cheapest():

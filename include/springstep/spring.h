@@ -65,9 +65,8 @@ typedef enum spring_method {
                         perpendicular to the velocity, see spring_scene_advance() */
     SPRING_RK4,      /**< order 4; small error in short runs; an undamped spring slowly loses energy */
     SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
-    SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error of smooth motion; common in game engines; leapfrog
-                                  needs as many force evaluations, except with heavy link damping and with callbacks
-                                  that use velocities */
+    SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error of smooth motion; common in game engines; leapfrog needs
+                                  as many force evaluations, except with callbacks that use velocities */
     SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
     SPRING_SRKN6 /**< order 6, bounded energy error of smooth motion; scenes without damped links; long runs in which
                     the energy must not drift */
