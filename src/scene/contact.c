@@ -346,36 +346,24 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     bound_with_box(b, rounded_up * (b->reach + b->growth * shift));
 }
 
-/* [m] The largest size of the numbers that the surface of a collider follows from. */
+/* [m] A bound on |x| + |y| + |z| of the points of a collider, relative to `at`. Planes: 0 */
+static double extent_of(const spring_collider *c, bool flat)
+{
+    double extent = c->shape == SPRING_PLANE ? 0 : c->radius;
+    if (c->shape == SPRING_CAPSULE)
+        extent += size_sum(subtract(vector_of(c->to, flat), vector_of(c->at, flat)));
+    if (c->shape == SPRING_BOX)
+        extent += size_sum(vector_of(c->half, flat));
+    if (is_custom(c->shape))
+        extent += c->bound;
+    return extent;
+}
+
+/* [m] The size of the coordinates that the surface of a collider follows from. */
 static double size_of(const spring_collider *c, bool flat)
 {
     const vector3 at = vector_of(c->at, flat), n = vector_of(c->axis[0], flat);
-    if (c->shape == SPRING_PLANE)
-        return fabs(inner(n, at)) * size_sum(n);
-    double size = size_sum(at) + c->radius;
-    if (c->shape == SPRING_CAPSULE)
-        size += size_sum(subtract(vector_of(c->to, flat), at));
-    for (int a = 0; a < (flat ? 2 : 3) && c->shape == SPRING_BOX; a++)
-        size += c->half[a];
-    return size;
-}
-
-/* [m] Radius of a sphere about `at` that contains a collider. 0: a plane, whose distance is not that of `at` */
-static double extent_of(const spring_collider *c, bool flat)
-{
-    switch (c->shape) {
-    case SPRING_CAPSULE:
-        return c->radius + length3(subtract(vector_of(c->to, flat), vector_of(c->at, flat)));
-    case SPRING_BOX:
-        return c->radius + length3(vector_of(c->half, flat));
-    case SPRING_CUSTOM:
-        return c->bound > 0 ? c->radius + c->bound : (double)INFINITY;
-    case SPRING_SPHERE:
-        return c->radius;
-    case SPRING_PLANE:
-        break;
-    }
-    return 0;
+    return c->shape == SPRING_PLANE ? fabs(inner(n, at)) * size_sum(n) : size_sum(at) + extent_of(c, flat);
 }
 
 /* Whether a collider may touch a box, or come close to it before colliders are set again. */
@@ -383,7 +371,8 @@ static bool is_near(const spring_collider *box, const spring_collider *c, bool f
 {
     const double reach = 2 * (extent_of(box, flat) + extent_of(c, flat));
     const vector3 arm = subtract(vector_of(box->at, flat), vector_of(c->at, flat));
-    return (c->shape == SPRING_PLANE ? inner(vector_of(c->axis[0], flat), arm) : length3(arm)) <= reach;
+    const double distance = c->shape == SPRING_PLANE ? inner(vector_of(c->axis[0], flat), arm) : size_sum(arm);
+    return distance <= reach || (is_custom(c->shape) && c->bound == 0);
 }
 
 double spring_contact_skin(const spring_collider *c, unsigned count, double epsilon, uint32_t axes)
@@ -464,10 +453,8 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double skin
             b->moves = true;
         }
         turn_with_segment(b, from, to);
-        if (b->turns)
-            angle = 2 * length3(subtract(b->end.axis[0], b->start.axis[0])) +
-                    2 * length3(subtract(b->end.axis[1], b->start.axis[1])) +
-                    2 * length3(subtract(b->end.axis[2], b->start.axis[2]));
+        for (int i = 0; b->turns && i < 3; i++)
+            angle += 2 * length3(subtract(b->end.axis[i], b->start.axis[i]));
     }
     b->rounding_scale = rounding_scale_at(b, &b->start);
     find_bounds(b, angle, c->bound);
@@ -1432,18 +1419,19 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     return nearby;
 }
 
-/* Has a particle leave a box through the face that it has touched in this step. If others press it deeply into a thin box,
-   the opposite face may be nearer. */
-static void keep_side(const contact_history *earlier, const contact_body *b, vector3 x, double radius, constraint *c)
+/* Has a particle leave a box through the side that it has touched in this step. If others press it deeply into a thin box,
+   the opposite side may be nearer. */
+static void keep_side(const contact_history *earlier, const contact_body *b, double radius, constraint *c)
 {
-    for (unsigned i = 0; i < earlier->count && b->shape == SPRING_BOX; i++) {
-        const vector3 n = earlier->normal[i], in_frame = direction_in(&b->end, n);
-        if (earlier->body[i] != c->index || !(inner(n, c->n) < 0))
+    for (unsigned i = 0; i < earlier->count; i++) {
+        if (earlier->body[i] != c->index || b->shape != SPRING_BOX || !(inner(earlier->normal[i], c->n) < -0.5))
             continue;
-        const double surface = fabs(in_frame.x) * b->half[0] + fabs(in_frame.y) * b->half[1] +
-                               (b->flat ? 0 : fabs(in_frame.z) * b->half[2]) + b->radius + radius;
-        c->n = n;
-        c->least = surface - inner(n, subtract(x, b->end.at));
+        const vector3 n = direction_in(&b->end, c->n);
+        double half = b->radius + radius;
+        for (int a = 0; a < (b->flat ? 2 : 3); a++)
+            half += fabs(component(n, a)) * b->half[a];
+        c->n = scale(-1, c->n);
+        c->least = 2 * half - c->least;
         return;
     }
 }
@@ -1465,7 +1453,7 @@ static void leave(const contact_setting *s, contact_particle *p, const contact_h
             const unsigned before = count,
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
-                keep_side(earlier, &s->body[i], x, p->radius, &c[k]);
+                keep_side(earlier, &s->body[i], p->radius, &c[k]);
                 const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
                 deepest = deep ? fmax(deepest, c[k].least) : deepest;
                 inside |= (uint32_t)deep << i;
@@ -1550,10 +1538,10 @@ static meeting *first_contact(const contact_setting *s, contact_particle *p, con
    bodies would otherwise pass through one of them. */
 static void end_at_contact(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    const vector3 x = add(p->x0, p->d), w = p->w;
+    const vector3 x = add(p->x0, p->d);
     p->d = scale(m->fraction, p->d);
     const vector3 x1 = add(p->x0, p->d);
-    spring_contact_record(s, p, m->index, &x, &w, &x1, &w);
+    spring_contact_record(s, p, m->index, &x, &p->w, &x1, &p->w);
 }
 
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
