@@ -27,11 +27,12 @@
  *              at a second contact of the step, or after item 1): the path is projected to the tangent plane, and w
  *              loses its component into the collider. Where another body continues the face, as on a floor of boxes,
  *              the path ends on the tangent plane. The same if a path along a face of a box hits another body.
- *           5. After a contact, the other colliders are tested with the changed path. A particle that is still inside at
- *              the end (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
- *              A pass moves it by at most the length of its path and the largest depth, because the tangent planes of
- *              surfaces that are almost face to face meet far away. Each pass lengthens the path, so the next can move
- *              it farther.
+ *           5. After a contact, the other colliders are tested with the changed path. After eight contacts, the path
+ *              ends at the next one. A particle that is still inside at the end (corners) is moved by the least D with
+ *              n_i.D >= depth_i, and w loses its components into these. It leaves a box through the side that it has
+ *              touched. A pass moves it by at most the length of its path and the largest depth, because the tangent
+ *              planes of surfaces that are almost face to face meet far away. Each pass lengthens the path, so the next
+ *              can move it farther.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
  *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
