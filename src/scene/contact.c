@@ -29,10 +29,10 @@
  *              the path ends on the tangent plane. The same if a path along a face of a box hits another body.
  *           5. After a contact, the other colliders are tested with the changed path. After eight contacts, the path
  *              ends at the next one. A particle that is still inside at the end (corners) is moved by the least D with
- *              n_i.D >= depth_i, and w loses its components into these. It leaves a box through the side that it has
- *              touched. A pass moves it by at most the length of its path and the largest depth, because the tangent
- *              planes of surfaces that are almost face to face meet far away. Each pass lengthens the path, so the next
- *              can move it farther.
+ *              n_i.D >= depth_i, and w loses its components into these. A pass moves it by at most the length of its path
+ *              and the largest depth, because the tangent planes of surfaces that are almost face to face meet far away.
+ *              Each pass lengthens the path, so the next can move it farther. A particle that is then on the other side
+ *              of a box that it has touched returns to its place at the start.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
  *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
@@ -1420,21 +1420,27 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     return nearby;
 }
 
-/* Has a particle leave a box through the side that it has touched in this step. If others press it deeply into a thin box,
-   the opposite side may be nearer. */
-static void keep_side(const contact_history *earlier, const contact_body *b, double radius, constraint *c)
+/* Returns a particle that other bodies have pressed through a thin box to its place at the start of the step, although it
+   may then be inside the others. */
+static uint32_t return_through(const contact_setting *s, contact_particle *p, const contact_history *earlier)
 {
     for (unsigned i = 0; i < earlier->count; i++) {
-        if (earlier->body[i] != c->index || b->shape != SPRING_BOX || !(inner(earlier->normal[i], c->n) < -0.5))
+        const unsigned k = earlier->body[i];
+        if (k == s->count || s->body[k].shape != SPRING_BOX)
             continue;
-        const vector3 n = direction_in(&b->end, c->n);
-        double half = b->radius + radius;
+        const contact_body *const b = &s->body[k];
+        const vector3 n = direction_in(&b->end, earlier->normal[i]), y = end_in_frame(b, p);
+        bool through = inner(n, y) < 0;
         for (int a = 0; a < (b->flat ? 2 : 3); a++)
-            half += fabs(component(n, a)) * b->half[a];
-        c->n = scale(-1, c->n);
-        c->least = 2 * half - c->least;
-        return;
+            through = through && (fabs(component(n, a)) > 0.5 || fabs(component(y, a)) < b->half[a]);
+        if (!through)
+            continue;
+        const vector3 x = add(p->x0, p->d), x1 = place_out(&b->end, place_in(&b->start, p->x0));
+        p->d = subtract(x1, p->x0);
+        spring_contact_record(s, p, k, &x, &p->w, &x1, &p->w);
+        return UINT32_C(1) << k;
     }
+    return 0;
 }
 
 /* Item 5, after all colliders. clear: bits of the colliders outside of which the path is known to end */
@@ -1454,7 +1460,6 @@ static void leave(const contact_setting *s, contact_particle *p, const contact_h
             const unsigned before = count,
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
-                keep_side(earlier, &s->body[i], p->radius, &c[k]);
                 const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
                 deepest = deep ? fmax(deepest, c[k].least) : deepest;
                 inside |= (uint32_t)deep << i;
@@ -1473,6 +1478,8 @@ static void leave(const contact_setting *s, contact_particle *p, const contact_h
         }
         nearby |= near_path(s, p);
     }
+    if (inside != 0 || earlier->count == contact_rounds)
+        inside |= return_through(s, p, earlier);
     if (inside == 0)
         return;
     p->touched |= inside;
@@ -1535,13 +1542,12 @@ static meeting *first_contact(const contact_setting *s, contact_particle *p, con
     return first;
 }
 
-/* Ends a path at a further contact, and leaves its impact to the next step. A path that bounces many times between thin
-   bodies would otherwise pass through one of them. */
+/* Ends a path at a further contact, on the surface as it is at the end of the step, and leaves the impact to the next step.
+   A path that bounces many times between thin bodies would otherwise pass through one of them. */
 static void end_at_contact(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    const vector3 x = add(p->x0, p->d);
-    p->d = scale(m->fraction, p->d);
-    const vector3 x1 = add(p->x0, p->d);
+    const vector3 x = add(p->x0, p->d), x1 = place_out(&m->b->end, m->place);
+    p->d = subtract(x1, p->x0);
     spring_contact_record(s, p, m->index, &x, &p->w, &x1, &p->w);
 }
 
@@ -1555,12 +1561,17 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         meeting *const first = first_contact(s, p, &earlier, nearby & ~clear & ~last, each, &clear);
         if (first == NULL)
             break;
+        const uint32_t bit = UINT32_C(1) << first->index;
         if (earlier.count == contact_rounds) {
-            if (first->fraction > least_fraction)
+            if (first->fraction > least_fraction) {
                 end_at_contact(s, p, first);
-            break;
+                clear = last = 0;
+                break;
+            }
+            last |= bit; /* pressed on it: left to leave() */
+            continue;
         }
-        last = UINT32_C(1) << first->index;
+        last = bit;
         earlier.body[earlier.count] = first->start_depth > 0 ? s->count : first->index;
         put(&earlier.normal[earlier.count++], first->n_end);
         const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;

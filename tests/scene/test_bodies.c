@@ -2116,6 +2116,66 @@ static void thin_plates(void)
     }
 }
 
+/* A marble bounces many times in a step between the walls of a lift, which rises. */
+static void bounces_in_a_lift(void)
+{
+    for (int k = 0; k < 200; k++) {
+        const double g[3] = {0, k % 2 ? -gravity : 0, 0}, rises = random_uniform(-3, 3), half = 0.01, wide = 0.02,
+                     x[3] = {random_uniform(-0.9, 0.9) * wide, k % 4 < 2 ? 0 : 0.01, 0},
+                     v[3] = {random_log(3, 50), rises, 0};
+        spring_collider c[3] = {
+            unit_box, {.shape = SPRING_PLANE, .axis = {{1, 0, 0}}}, {.shape = SPRING_PLANE, .axis = {{-1, 0, 0}}}};
+        c[0].half[1] = half;
+        c[0].at[1] = -half;
+        c[1].at[0] = -wide;
+        c[2].at[0] = wide;
+        for (int i = 0; i < 3; i++) {
+            c[i].velocity[1] = rises;
+            c[i].restitution = 1;
+        }
+        spring_scene *s = particle_at(x, v, g, 3);
+        set(s, c, 3);
+        for (int n = 1; n <= 60; n++) {
+            double now[3], speed[3];
+            run(s, with_contacts[k % method_count], frame, 1);
+            get(s, now, speed);
+            CHECK(fabs(now[0]) <= wide + 64 * EPS && now[1] >= rises * n * frame - 64 * EPS * 10, "inside the lift");
+        }
+        free(s);
+    }
+}
+
+/* A ball comes down on a thin plate, near its edge, where particles rest. None of them goes through, or jumps farther than
+   its speed and that of the ball allow. */
+static void ball_on_an_edge(void)
+{
+    double farthest = 0;
+    for (int k = 0; k < 2000; k++) {
+        const double x[3] = {random_uniform(1.9, 2), 0, random_uniform(-0.2, 0.2)}, g[3] = {0, -gravity, 0},
+                     none[3] = {0};
+        const double half = random_log(1e-3, 0.02), falls = random_uniform(0.3, 2);
+        spring_collider c[2] = {unit_box,
+                                {.shape = SPRING_SPHERE, .at = {random_uniform(1.8, 2.1), 0.4, 0}, .radius = 0.3}};
+        c[0].half[1] = half;
+        c[0].at[1] = -half;
+        c[1].velocity[1] = -falls;
+        spring_scene *s = particle_at(x, none, g, 2);
+        set(s, c, 2);
+        double before[3], now[3], v[3], way[3];
+        for (int n = 0; n < 30; n++) {
+            get(s, before, v);
+            const double speed = length(v);
+            run(s, with_contacts[k % method_count], frame, 1);
+            get(s, now, v);
+            for (int a = 0; a < 3; a++)
+                way[a] = now[a] - before[a];
+            farthest = fmax(farthest, length(way) - frame * (falls + speed + length(v)));
+        }
+        free(s);
+    }
+    CHECK_BELOW(farthest, 0.3, "a jump: the radius of the ball");
+}
+
 /* Colliders that wait far away for their use do not change how a particle rests on a box. */
 static void waiting_colliders(void)
 {
@@ -2523,6 +2583,8 @@ static const test tests[] = {
     {"start on a seam", start_on_a_seam},
     {"fall on a seam", fall_on_a_seam},
     {"thin plates", thin_plates},
+    {"bounces in a lift", bounces_in_a_lift},
+    {"ball on an edge", ball_on_an_edge},
     {"waiting colliders", waiting_colliders},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
