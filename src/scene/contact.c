@@ -1518,8 +1518,8 @@ static unsigned next_face(const contact_setting *s, contact_particle *p, uint32_
     return s->count;
 }
 
-/* The first contact of a path with some bodies, in one of each[2]; NULL: none. Adds the bits of the bodies that it passes
-   outside to clear. */
+/* The first contact of a path with some bodies, in one of each[2]; NULL: none. Sets the bits of `clear` for bodies that the
+   path does not touch. */
 static meeting *first_contact(const contact_setting *s, contact_particle *p, const contact_history *earlier,
                               uint32_t bodies, meeting each[2], uint32_t *clear)
 {
@@ -1568,7 +1568,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
                 clear = last = 0;
                 break;
             }
-            last |= bit; /* pressed on it: left to leave() */
+            last |= bit; /* leave() treats a particle that is pressed on it */
             continue;
         }
         last = bit;
