@@ -123,5 +123,9 @@ prepare() {
     local -a how=()
     [[ ! -e $build/build.ninja ]] || how=(--reconfigure) # packages may have been installed since it was configured
     meson setup "${how[@]}" -Dtools=enabled -Dreferences=enabled -Dtests=enabled -Dreport=enabled "$build" "$root" >&2
+    if ((${#how[@]})); then # Meson saves its options after the build file, for which ninja would configure a second time
+        touch "$build/build.ninja"
+        ninja -C "$build" -t restat build.ninja >&2
+    fi
     meson compile -C "$build" >&2
 }
