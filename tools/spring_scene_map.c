@@ -174,9 +174,10 @@ static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind,
 static double time_frames(const subject *s, spring_method m, uint64_t substeps)
 {
     const double long_enough = quick ? 2.5 : 5, nanosecond = 1e-6; /* [ms] */
+    const int enough = quick ? 3 : 5;
     double best = INFINITY;
     uint64_t frames = 1;
-    for (int loops = 0; loops < 5; loops++) {
+    for (int loops = 0; loops < enough; loops++) {
         spring_scene *scene = start(s, m);
         const double before = timing_busy();
         for (uint64_t i = 0; i < frames; i++)
