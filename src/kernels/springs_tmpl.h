@@ -66,8 +66,8 @@ SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_
     return store_group(run, i, b->x + i, b->v + i, x, v, vectors, signs);
 }
 
-/* Several steps, group by group. The loop over steps is compiled for each set of features, all other code once. Euler,
-   which is never stable without damping, has one loop. */
+/* Group by group. The loop over steps is compiled for each set of features, all other code once. Euler, which is never
+   stable without damping, has one loop. */
 SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
                                   bool damped, bool loaded)
 {
@@ -85,8 +85,8 @@ SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare,
     return all;
 }
 
-/* A single step, vector by vector. The processor overlaps independent vectors by itself, and groups are slower for
-   springs in memory. */
+/* A single step of leapfrog, vector by vector. The processor overlaps independent vectors by itself, and groups are slower
+   for springs in memory. */
 SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
                                 bool damped, bool loaded)
 {
@@ -104,15 +104,14 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     return all;
 }
 
-/* Only leapfrog has a loop over single steps for each set of features. With vectors of 64 bytes it has one loop. */
+/* Leapfrog has a loop over single steps for each set of features; with vectors of 64 bytes, one loop. */
 SPRING_INLINE bool advance_by(const batch_run *b, method_prepare *prepare, method_start *start, method_step *step)
 {
     const bool damped = b->gamma.first != NULL, loaded = b->accel.first != NULL;
-    if (b->n > 1 || SPRING_COMPACT)
+    if (b->n > 1 || step != leapfrog_step || SPRING_COMPACT)
         return advance_groups(b, prepare, start, step, damped, loaded);
-    return step == leapfrog_step && SPRING_VECTOR < 64
-               ? SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step)
-               : advance_once(b, prepare, start, step, damped, loaded);
+    return SPRING_VECTOR < 64 ? SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step)
+                              : advance_once(b, prepare, start, step, damped, loaded);
 }
 
 static bool advance_each_exactly(const batch_run *b)
