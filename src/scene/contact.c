@@ -27,12 +27,12 @@
  *              at a second contact of the step, or after item 1): the path is projected to the tangent plane, and w
  *              loses its component into the collider. Where another body continues the face, as on a floor of boxes,
  *              the path ends on the tangent plane. The same if a path along a face of a box hits another body.
- *           5. After a contact, the other colliders are tested with the changed path. After eight contacts, the path
- *              ends at the next one. A particle that is still inside at the end (corners) is moved by the least D with
- *              n_i.D >= depth_i, and w loses its components into these. A pass moves it by at most the length of its path
- *              and the largest depth, because the tangent planes of surfaces that are almost face to face meet far away.
- *              Each pass lengthens the path, so the next can move it farther. A particle that is then on the other side
- *              of a box that it has touched returns to its place at the start.
+ *           5. After a contact, the other colliders are tested with the changed path. After eight contacts, a path that
+ *              would pass through the next body ends on it. A particle that is still inside at the end (corners) is moved
+ *              by the least D with n_i.D >= depth_i, and w loses its components into these. A pass moves it by at most the
+ *              length of its path and the largest depth, because the tangent planes of surfaces that are almost face to
+ *              face meet far away. Each pass lengthens the path, so the next can move it farther. A particle that is then
+ *              on the other side of a box that it has touched returns to its place at the start.
  * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
  *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
  *           |A| <= F. w is chosen so that the last kick gives the velocity at the end. A particle that sticks from the
@@ -1542,13 +1542,18 @@ static meeting *first_contact(const contact_setting *s, contact_particle *p, con
     return first;
 }
 
-/* Ends a path at a further contact, on the surface as it is at the end of the step, and leaves the impact to the next step.
-   A path that bounces many times between thin bodies would otherwise pass through one of them. */
-static void end_at_contact(const contact_setting *s, contact_particle *p, const meeting *m)
+/* Ends a path at a further contact if it would pass through the body, on the surface as it is at the end of the step, and
+   leaves the impact to the next step. Otherwise leave() moves its end out. */
+static bool end_at_contact(const contact_setting *s, contact_particle *p, const meeting *m)
 {
+    near_point there;
+    gap_at_end(p, m->b, &there);
+    if (m->fraction <= least_fraction || inner(there.normal, m->at.normal) > 0)
+        return false;
     const vector3 x = add(p->x0, p->d), x1 = place_out(&m->b->end, m->place);
     p->d = subtract(x1, p->x0);
     spring_contact_record(s, p, m->index, &x, &p->w, &x1, &p->w);
+    return true;
 }
 
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
@@ -1563,8 +1568,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
             break;
         const uint32_t bit = UINT32_C(1) << first->index;
         if (earlier.count == contact_rounds) {
-            if (first->fraction > least_fraction) {
-                end_at_contact(s, p, first);
+            if (end_at_contact(s, p, first)) {
                 clear = last = 0;
                 break;
             }

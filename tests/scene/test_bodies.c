@@ -535,6 +535,47 @@ static void between_closing_bodies(void)
     CHECK_BELOW(farthest / fits, 4. / 3, "distance from the axis after a step, in units of that of the nearest place");
 }
 
+/* A particle that a force presses into the crevice between two round bodies slides along it: its velocity is that of its
+   motion. */
+static void crevice_of_round_bodies(void)
+{
+    const double dt = 1e-3;
+    double worst = 0;
+    const size_t cases = random_cases(1000);
+    for (size_t i = 0; i < cases; i++) {
+        const double friction = random_bits() % 3 ? 0 : random_uniform(0.1, 1), speed = random_uniform(-0.3, 0.3),
+                     radius[2] = {0.2, random_uniform(0.05, 0.3)},
+                     distance = radius[0] + radius[1] - random_uniform(0.001, 0.05);
+        const double along = (distance + (pow(radius[0], 2) - pow(radius[1], 2)) / distance) / 2;
+        const double x[3] = {along, 0, sqrt(pow(radius[0], 2) - along * along)}, none[3] = {0};
+        const double pull = random_log(1, 1e5);
+        const double g[3] = {pull * random_uniform(-0.3, 0.3), pull * random_uniform(-0.5, 0.5), -pull};
+        spring_collider c[2] = {
+            {.radius = radius[0], .friction = friction},
+            {.radius = radius[1], .friction = friction, .at = {distance, 0, 0}, .velocity = {speed, 0, 0}}};
+        c[0].shape = c[1].shape = SPRING_SPHERE;
+        if (random_bits() % 2) {
+            c[0].shape = SPRING_CAPSULE;
+            c[0].at[1] = -1;
+            c[0].to[1] = 1;
+        }
+        spring_scene *s = particle_at(x, none, g, 2);
+        set(s, c, 2);
+        double before[3], now[3], v[3];
+        for (int n = 0; n < 60; n++) {
+            get(s, before, v);
+            run(s, with_contacts[i % 2], dt, 1);
+            get(s, now, v);
+            const double way =
+                sqrt(pow(now[0] - before[0], 2) + pow(now[1] - before[1], 2) + pow(now[2] - before[2], 2));
+            if (n > 4)
+                worst = fmax(worst, length(v) / (way / dt + length(g) * dt + fabs(speed) + 8 * EPS / dt));
+        }
+        free(s);
+    }
+    CHECK_BELOW(worst, 1, "velocity, in units of that of the motion, of the change in a step, and of the body");
+}
+
 /* Two planes that enclose a small angle close in on a particle between them, which they push out. */
 static void closing_grooves(void)
 {
@@ -2623,6 +2664,7 @@ static const test tests[] = {
     {"closing grooves", closing_grooves},
     {"inside several", inside_several},
     {"between closing bodies", between_closing_bodies},
+    {"crevice of round bodies", crevice_of_round_bodies},
     {"capsules that stretch", capsules_that_stretch},
     {"closing plates", closing_plates},
     {"spinning ball in motion", spinning_ball_in_motion},
