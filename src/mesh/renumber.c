@@ -157,14 +157,17 @@ static void find_order(graph *g, uint32_t *order)
 {
     const double longer = 1.25; /* than the shortest link: between the edge of a square and its diagonal */
     double shortest = (double)INFINITY;
-    for (size_t i = 0; i < g->links; i++)
+    size_t counted = 0;
+    for (size_t i = 0; i < g->links; i++) {
+        counted += counts(&g->link[i], (double)INFINITY);
         if (counts(&g->link[i], shortest))
             shortest = g->link[i].rest;
+    }
     list_neighbours(g, longer * shortest);
     number_by_levels(g);
     number_by_chains(g, order);
     const uint64_t offsets = count_offsets(g);
-    if (offsets * offsets <= g->particles)
+    if (offsets * offsets <= g->particles && counted >= g->particles) /* fewer: ropes */
         return;
     list_neighbours(g, (double)INFINITY);
     number_by_levels(g);

@@ -749,7 +749,7 @@ SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, slide_
 /* The contacts of a particle in a step. */
 typedef struct contact_history {
     unsigned count;
-    unsigned body[contact_rounds];  /* the number of bodies if the particle started inside */
+    unsigned body[contact_rounds];
     vector3 normal[contact_rounds]; /* in the scene */
 } contact_history;
 
@@ -882,8 +882,9 @@ static bool passes_face(const contact_body *b, const meeting *m, double radius, 
     return false;
 }
 
-/* Whether another body is at the start of the chord, beyond the face of a box with this normal. */
-static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal)
+/* Whether another body is at the start of the chord, beyond the face of a box with this normal. skins: how deep it is there at
+   least */
+static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double skins)
 {
     const vector3 x = place_out(&m->b->start, add_scaled(m->start, 4 * m->b->skin, normal));
     for (unsigned i = 0; i < s->count; i++) {
@@ -892,28 +893,58 @@ static bool is_covered(const contact_setting *s, contact_particle *p, const meet
         if (i == m->index || (b->bits & p->bits) == 0 || is_custom(b->shape))
             continue;
         find_nearest(p, b, 0, place_in(&b->start, x), &at);
-        if (at.gap < 0)
+        if (at.gap < -skins * b->skin)
             return true;
     }
     return false;
 }
 
-/* At an edge of a box, chooses the face into which the path goes fastest, of those that no other body covers. radius: [m] of
-   the box and the particle */
+/* Whether another body adjoins the face of a box with this normal, as the floor under a wall: nothing fits between. gap: of
+   the start of the chord to that face */
+static bool adjoins(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double gap)
+{
+    const double out = -gap - p->radius; /* [m] to the face */
+    const vector3 x = place_out(&m->b->start, add_scaled(m->start, out, normal));
+    for (unsigned i = 0; i < s->count; i++) {
+        const contact_body *const b = &s->body[i];
+        near_point at;
+        if (i == m->index || (b->bits & p->bits) == 0 || is_custom(b->shape))
+            continue;
+        find_nearest(p, b, 0, place_in(&b->start, x), &at);
+        if (fabs(at.gap + p->radius) <= flush_of(p, b) + b->skin + m->b->skin &&
+            inner(direction_out(&b->start, at.normal), direction_out(&m->b->start, normal)) < -same_plane)
+            return true;
+    }
+    return false;
+}
+
+/* Inside a box, chooses another face than the nearest one. At an edge: the face into which the path goes fastest, of those
+   that no other body covers. If a body adjoins the nearest face: the next nearest one, unless a body covers it, or it is
+   farther than the box is thin. radius: [m] of the box and the particle */
 static void choose_face(const contact_setting *s, contact_particle *p, meeting *m, double radius)
 {
     const contact_body *const b = m->b;
-    const double least = m->at.gap - m->slop;
-    double most = 0;
-    for (int a = 0; a < 3; a++) {
+    const double nearest = m->at.gap, thinnest = fmin(fmin(b->half[0], b->half[1]), b->flat ? b->half[1] : b->half[2]);
+    const bool passed = adjoins(s, p, m, m->at.normal, nearest);
+    double most = 0, next = -(double)INFINITY;
+    vector3 next_normal = zero3;
+    for (int a = 0; a < (b->flat ? 2 : 3); a++) {
         const double side = component(m->start, a) < 0 ? -1 : 1;
         const vector3 normal = {a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
         const double rate = inner(normal, m->way), gap = inner(normal, m->start) - b->half[a] - radius;
-        if (!(gap >= least) || !(rate < most) || is_covered(s, p, m, normal))
+        if (gap > next && gap > -thinnest - radius && !(inner(normal, m->at.normal) > 0)) {
+            next = gap;
+            next_normal = normal;
+        }
+        if (!(gap >= nearest - m->slop) || !(rate < most) || is_covered(s, p, m, normal, 0))
             continue;
         most = rate;
         m->at.gap = gap;
         m->at.normal = normal;
+    }
+    if (most == 0 && passed && !is_zero(next_normal) && !is_covered(s, p, m, next_normal, 2)) {
+        m->at.gap = next;
+        m->at.normal = next_normal;
     }
 }
 
@@ -1426,7 +1457,7 @@ static uint32_t return_through(const contact_setting *s, contact_particle *p, co
 {
     for (unsigned i = 0; i < earlier->count; i++) {
         const unsigned k = earlier->body[i];
-        if (k == s->count || s->body[k].shape != SPRING_BOX)
+        if (s->body[k].shape != SPRING_BOX)
             continue;
         const contact_body *const b = &s->body[k];
         const vector3 n = direction_in(&b->end, earlier->normal[i]), y = end_in_frame(b, p);
@@ -1534,7 +1565,8 @@ static meeting *first_contact(const contact_setting *s, contact_particle *p, con
         next->earlier = earlier;
         if (!meet(s, p, next))
             *clear |= s->body[i].degenerate ? 0 : bit;
-        else if (first == NULL || next->fraction < first->fraction) {
+        else if (first == NULL || next->fraction < first->fraction ||
+                 (next->fraction == first->fraction && next->at.gap < first->at.gap)) {
             first = next;
             next = first == &each[0] ? &each[1] : &each[0];
         }
@@ -1576,7 +1608,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
             continue;
         }
         last = bit;
-        earlier.body[earlier.count] = first->start_depth > 0 ? s->count : first->index;
+        earlier.body[earlier.count] = first->index;
         put(&earlier.normal[earlier.count++], first->n_end);
         const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;
         const vector3 before = p->d;

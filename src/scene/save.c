@@ -326,14 +326,15 @@ static bool weighted_fits(const arriving *a, const stored_weighted *l, const wei
 
 static bool weighted_valid(arriving *a, const section *row, uint8_t *state, bool fine)
 {
-    const double rounding = sizeof(scalar) < sizeof(double) ? 4 * (double)SCALAR_EPSILON : 1e-12;
+    const bool single = sizeof(scalar) < sizeof(double);
+    const double rounding = single ? 4 * (double)SCALAR_EPSILON : 1e-12, denormal = single ? 0x1p-147 : 0;
     const double lightest = a->lightest > 1 ? (double)a->lightest : 1;
     const stored_weighted *l = scene_read(a->s, row->array);
     for (size_t i = 0; i < row->count && fine; i++, l++, state += sizeof(weighted_numbers)) {
         weighted_numbers n;
         copy_numbers(&n, state, weighted_count, sizeof(scalar));
         const scalar *const w = n.weight;
-        const bool fits = l->slot != no_slot && w[1] != 0 && w[1] == w[2] && w[0] == -2 * w[1] && w[3] == 0;
+        const bool fits = l->slot != no_slot && weights_of_band(w);
         double sum = 0, largest = fabs((double)w[0]);
         for (int k = 0; k < 4 && !fits; k++) {
             const double weight = (double)w[k], size = fabs(weight);
@@ -343,8 +344,8 @@ static bool weighted_valid(arriving *a, const section *row, uint8_t *state, bool
         }
         const double strength = (double)(n.stiffness > n.damping ? n.stiffness : n.damping);
         const double most = 4 * largest * largest * strength * lightest; /* 4 particles */
-        fine = fine && fabs(sum) <= rounding * largest && n.rest >= 0 && n.stiffness >= 0 && n.damping >= 0 &&
-               (n.banded == 0 || (n.banded == 1 && fits && n.rest == 0)) &&
+        fine = fine && fabs(sum) <= rounding * largest + denormal && n.rest >= 0 && n.stiffness >= 0 &&
+               n.damping >= 0 && (n.banded == 0 || (n.banded == 1 && fits && n.rest == 0)) &&
                (most < (double)SCALAR_MAX / 2 || weighted_fits(a, l, &n));
     }
     return fine;

@@ -135,7 +135,7 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
     }
     if (q == SPRING_POSITION)
         scene_clear_touched(s, first, count);
-    if (q != SPRING_FORCE) /* held forces are no part of the stored force */
+    if (q != SPRING_FORCE && count > 0) /* held forces are no part of the stored force */
         scene_drop_forces(s);
     return SPRING_OK;
 }

@@ -164,8 +164,10 @@ spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, siz
         scene_write_weighted(s, to, &link[i]);
         scene_count_weighted(s, to, true);
     }
-    s->bounds_known = false;
-    scene_drop_forces(s);
+    if (count > 0) {
+        s->bounds_known = false;
+        scene_drop_forces(s);
+    }
     return SPRING_OK;
 }
 

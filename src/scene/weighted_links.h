@@ -30,7 +30,13 @@ static inline void scene_count_weighted(spring_scene *s, const stored_weighted *
 
 #include "../simd/size_begin.h"
 
-/* Stores the coefficients of a link, also in its slot of a band if it fits there. */
+/* Whether weights, in the precision of the scene, are those of a link in a band: (-2w, w, w, 0). */
+static inline bool weights_of_band(const scalar w[4])
+{
+    return w[1] != 0 && w[1] == w[2] && w[0] == -2 * w[1] && w[3] == 0;
+}
+
+/* Stores the coefficients of a link, also in its slot of a band if it fits there. Weights may underflow. */
 static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, const spring_weighted_link *link)
 {
     for (int i = 0; i < to->points; i++)
@@ -38,7 +44,7 @@ static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, co
     to->rest = (scalar)fabs(link->rest);
     to->stiffness = (scalar)link->stiffness;
     to->damping = (scalar)link->damping;
-    to->banded = to->slot != no_slot && three_points_of(link).offset > 0;
+    to->banded = to->slot != no_slot && three_points_of(link).offset > 0 && weights_of_band(to->weight);
     if (to->slot != no_slot)
         scene_fill_slot(s, to, scene_slot_place(s, to->slot).index);
 }

@@ -2055,6 +2055,66 @@ static void corner_of_planes(void)
     }
 }
 
+/* A particle that slides over the seam of two boxes keeps its velocity, wherever it is at the start of a step, and whichever
+   box is the first. */
+static void slide_over_a_seam(void)
+{
+    const double size = 2 * (unit_box.half[0] + unit_box.half[1] + unit_box.half[2]), skin = 32 * EPS * size;
+    double worst = 0;
+    for (int k = 0; k < 400; k++) {
+        const double dt = frame / 8, way = k % 2 ? 1 : -1, g[3] = {0, -gravity, 0}, v[3] = {way, 0, 0};
+        const double x[3] = {skin * random_uniform(-2, 2) - 20 * dt * way, 0, 0.1};
+        spring_collider c[2] = {unit_box, unit_box};
+        for (int i = 0; i < 2; i++) {
+            c[i].at[0] = (i == k / 2 % 2 ? 1 : -1) * c[i].half[0];
+            c[i].at[1] = -c[i].half[1];
+        }
+        spring_scene *s = particle_at(x, v, g, 2);
+        double now[3], u[3];
+        set(s, c, 2);
+        run(s, SPRING_LEAPFROG, dt, 40);
+        get(s, now, u);
+        worst = fmax(worst, fmax(fabs(u[0] - v[0]), fabs(u[1])));
+        free(s);
+    }
+    CHECK_BELOW(worst, 64 * EPS * size / (frame / 8), "change of velocity: the skin in a step");
+}
+
+/* A wall stands on a floor, and particles are pressed into the corner. When the wall jumps forward, they are moved out
+   through its front, and not through its bottom, into the floor. */
+static void wall_that_jumps(void)
+{
+    static const double jumps[] = {1e-13, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 0.02, 0.1};
+    for (size_t k = 0; k < 4 * sizeof jumps / sizeof jumps[0]; k++) {
+        const double jump = jumps[k / 4], r = k % 4 > 1 ? 0.01 : 0, g[3] = {-10, -gravity, random_uniform(-1, 1)};
+        const double x[3] = {0.1, r + 0.05, 0}, none[3] = {0};
+        spring_collider c[2] = {unit_box, unit_box};
+        c[0].at[1] = -c[0].half[1];
+        c[0].half[0] = c[0].half[2] = c[1].half[2] = 5;
+        if (k % 2)
+            c[0] = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+        c[1].at[0] = -c[1].half[0];
+        c[1].at[1] = c[1].half[1];
+        const spring_scene_def def = {.particles = 1,
+                                      .position = x,
+                                      .velocity = none,
+                                      .mass_all = 0.3,
+                                      .gravity = {g[0], g[1], g[2]},
+                                      .colliders = 2,
+                                      .particle_radius = r};
+        spring_scene *s = scene_of(&def);
+        double now[3], v[3];
+        set(s, c, 2);
+        run(s, SPRING_LEAPFROG, frame / 8, 200);
+        c[1].at[0] += jump;
+        set(s, c, 2);
+        run(s, SPRING_LEAPFROG, frame / 8, 20);
+        get(s, now, v);
+        CHECK(now[1] > r - 1e3 * EPS && now[0] > jump + r - 1e3 * EPS, "on the floor, before the wall");
+        free(s);
+    }
+}
+
 /* A particle starts on the surface, where four boxes of a floor meet, and slides away. */
 static void start_on_a_seam(void)
 {
@@ -2622,6 +2682,8 @@ static const test tests[] = {
     {"wall on a floor", wall_on_a_floor},
     {"corner of planes", corner_of_planes},
     {"start on a seam", start_on_a_seam},
+    {"slide over a seam", slide_over_a_seam},
+    {"wall that jumps", wall_that_jumps},
     {"fall on a seam", fall_on_a_seam},
     {"thin plates", thin_plates},
     {"bounces in a lift", bounces_in_a_lift},

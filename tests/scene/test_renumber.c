@@ -69,6 +69,14 @@ static void rope(model *m)
     sheet(m, 300, 1, 1, SPRING_GRID_STRUCTURAL, false);
 }
 
+/* Each link with any of three lengths. */
+static void uneven(model *m)
+{
+    rope(m);
+    for (size_t i = 0; i < m->links; i++)
+        m->link[i].rest = (const double[]){0.3, 0.36, 0.45}[below(3)];
+}
+
 /* Two ropes, a ring, and some particles that nothing is joined to. */
 static void apart(model *m)
 {
@@ -140,6 +148,7 @@ static const row rows[] = {
     {.make = one},
     {pair, 1, 1, {0}, 0, 0},
     {rope, 1, 1, {0}, 0, 0},
+    {uneven, 1, 1, {0}, 0, 0},
     {apart, 15, 3, {0}, 0, 0}, /* of the ring one half, then the other */
     {twice, 1, 1, {0}, 0, 0},
     {star, 699, 0, {0}, 0, 0},
@@ -413,7 +422,8 @@ static void numbered_as_by_cuthill_and_mckee(void)
 }
 
 /* Of a rope whose links are long and short in turn the short ones alone make many offsets, all of them make one. Single
-   particles change neither, but there are so many that the offsets count as few. */
+   particles change neither, but there are so many that the offsets count as few, if there are as many links. Links that are
+   there twice change nothing else. */
 static void levels_where_offsets_are_many(void)
 {
     static model m;
@@ -425,6 +435,9 @@ static void levels_where_offsets_are_many(void)
             join(&m, i, i + 1, i % 2 == 0 ? 0.3 : 0.7);
         shuffle(&m, number);
         m.particles = most_particles - 1;
+        CHECK(renumbered_offsets(&m).count == 1, "a rope, with its links alone");
+        for (size_t i = 0; m.links < m.particles; i++)
+            m.link[m.links++] = m.link[i];
         const size_t many = renumbered_offsets(&m).count;
         CHECK(many > 5, "the test sees a difference");
         m.particles = many * many;

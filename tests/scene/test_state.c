@@ -630,6 +630,67 @@ static void too_light_for_weighted(void)
     free(s);
 }
 
+/* The weights of a link in a band may underflow in single precision: its state is then one that loads. */
+static void weights_that_underflow(void)
+{
+    enum { particles = 12 };
+    static const double sizes[] = {1, 1e-50, 1.5e-45, 3e-45, 1e-300};
+    double x[3 * particles] = {0};
+    spring_weighted_link link[particles - 2];
+    for (uint32_t i = 0; i < particles; i++)
+        x[3 * i] = i;
+    for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
+        for (int edited = 0; edited < 2; edited++) {
+            for (uint32_t i = 0; i < particles - 2; i++)
+                link[i] =
+                    (spring_weighted_link){.particle = {i, i + 1, i + 2}, .weight = {0.5, -1, 0.5}, .stiffness = 10};
+            spring_weighted_link other = link[5];
+            for (int j = 0; j < 3; j++)
+                other.weight[j] *= sizes[k];
+            if (!edited)
+                link[5] = other;
+            const spring_scene_def def = {.flags = SPRING_SCENE_EDITABLE,
+                                          .particles = particles,
+                                          .position = x,
+                                          .weighted_links = particles - 2,
+                                          .weighted_link = link};
+            spring_scene *s = scene_of(&def);
+            CHECK(!edited || spring_scene_set_weighted_links(s, 5, 1, &other) == SPRING_OK, "small weights");
+            size_t bytes;
+            CHECK(spring_scene_save(s, NULL, &bytes) == SPRING_OK, "its size");
+            void *saved = malloc(bytes);
+            CHECK(spring_scene_save(s, saved, &bytes) == SPRING_OK && spring_scene_load(s, saved, bytes) == SPRING_OK,
+                  "its own state");
+            free(saved);
+            free(s);
+        }
+}
+
+/* A change of no particle or no link changes nothing, not even the forces that leapfrog keeps. */
+static void changes_of_nothing(void)
+{
+    static model m;
+    build(&m, sheet, 3, DAMPED);
+    m.def.flags = SPRING_SCENE_EDITABLE;
+    spring_scene *s = scene_of(&m.def);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1e-3, 3) == SPRING_OK, "forces are kept");
+    size_t bytes;
+    spring_scene_bytes(&m.def, &bytes);
+    void *const before = malloc(bytes);
+    memcpy(before, s, bytes);
+    const uint8_t pin = 1;
+    CHECK(spring_scene_set(s, SPRING_POSITION, m.position, 0, m.def.particles, 0) == SPRING_OK &&
+              spring_scene_set(s, SPRING_VELOCITY, m.position, 0, 0, 0) == SPRING_OK &&
+              spring_scene_set_links(s, 0, 0, m.link) == SPRING_OK &&
+              spring_scene_set_weighted_links(s, 0, 0, m.weighted) == SPRING_OK &&
+              spring_scene_set_mass(s, 0, 0, m.position) == SPRING_OK &&
+              spring_scene_set_pinned(s, 0, 0, &pin) == SPRING_OK,
+          "nothing is set");
+    CHECK(memcmp(before, s, bytes) == 0, "nothing has changed");
+    free(before);
+    free(s);
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -647,6 +708,8 @@ int main(void)
         {"calls that are refused", refused_calls},
         {"sizes and options", sizes_and_options},
         {"masses that are too small for weighted links", too_light_for_weighted},
+        {"weights that underflow", weights_that_underflow},
+        {"changes of nothing", changes_of_nothing},
     };
     return RUN_TESTS("scene_state", tests);
 }

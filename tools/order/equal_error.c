@@ -58,7 +58,7 @@ static double error_bound(spring_method m, double duration, uint64_t n)
 
 static _Noreturn void fail_for_rounding(spring_method m, double error)
 {
-    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m, because the rounding error is of that size",
+    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m, because the bound of its rounding error, 8 eps n, is of that size",
              spring_method_name(m), error);
 }
 
