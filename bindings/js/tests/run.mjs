@@ -553,6 +553,41 @@ await test("animate: a spring that a callback of another one stops stays where i
         }
 });
 
+await test("animate: draw functions that read other Springs do not run for ever, and those that write move them", () => {
+    const thrown = [];
+    globalThis.reportError = (error) => thrown.push(error.message);
+    for (const reduced of [false, true]) {
+        globalThis.matchMedia = () => ({ matches: reduced });
+        const it = stage();
+        const [xs, ys, last, placed] = Array.from({ length: 4 }, () => new Springs(2, { duration: 0.3 }));
+        const draws = [0, 0, 0, 0];
+        let shown;
+        [xs, ys, last, placed].forEach((springs, i) =>
+            it.animate(springs, () => {
+                draws[i]++;
+                shown = [...xs.value, ...ys.value, ...last.value, ...placed.value];
+            }),
+        );
+        it.run();
+        assert.deepStrictEqual(draws, [1, 1, 1, 1]);
+        xs.target.fill(100);
+        assert(it.run() < 100 && xs.settled(0));
+        assert.deepStrictEqual(draws.slice(1), [1, 1, 1], "a read draws nothing");
+        it.animate(xs, ([x]) => (ys.target[1] = x));
+        it.animate(ys, ([, y]) => (last.target[0] = y));
+        it.animate(last, ([z]) => (placed.value[0] = placed.target[0] = z));
+        xs.target[0] = 50;
+        assert(it.run() < 300);
+        assert.deepStrictEqual(shown, [50, 100, 0, 50, 50, 0, 50, 0], "each follows the one before it");
+        it.animate(last, () => (placed.target[1] = NaN));
+        xs.target[0] = 20;
+        assert(it.run() < 300);
+        assert.deepStrictEqual(thrown.splice(0), ["target[1] must be a finite number, got NaN"]);
+    }
+    delete globalThis.matchMedia;
+    delete globalThis.reportError;
+});
+
 await test("animate: a target near the value that a callback sets is reached", () => {
     for (const [kind, make] of Object.entries(kinds))
         for (const when of ["draw", "onRest"]) {
