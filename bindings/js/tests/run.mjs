@@ -529,6 +529,24 @@ await test("animate: a frame in which onRest throws is drawn, and each value is 
     assert.deepStrictEqual(told, [0, 1, 2, 0, 1, 2]);
 });
 
+await test("animate: a value that draw finishes is drawn, also if onRest throws", () => {
+    globalThis.reportError = () => {};
+    const it = stage();
+    const spring = new Spring(0, { duration: 0.3 });
+    spring.onRest = () => {
+        throw new Error("rested");
+    };
+    let drawn;
+    it.animate(spring, (value) => {
+        drawn = value;
+        if (value > 50) spring.finish();
+    });
+    spring.target = 100;
+    it.run();
+    assert.strictEqual(drawn, 100);
+    delete globalThis.reportError;
+});
+
 await test("animate: a spring that a callback of another one stops stays where it is", () => {
     for (const make of Object.values(kinds))
         for (const when of ["draw", "onRest"]) {
@@ -925,6 +943,30 @@ await test("onRest is called once each time a spring settles", () => {
     s.target = 0;
     run();
     assert.deepStrictEqual([s.value, s.settled], [1, true], "a callback may set a new target");
+});
+
+await test("onRest may normalise the value and the target, and is called again only if that changes them", () => {
+    const ways = {
+        value: (spring) => (spring.value %= 360),
+        jump: (spring) => spring.jump(spring.value % 360),
+        finish(spring) {
+            if (spring.value >= 360) spring.target -= 360;
+            spring.finish();
+        },
+    };
+    for (const [name, normalise] of Object.entries(ways)) {
+        let rests = 0;
+        const angle = new Spring(0, { duration: 0.3 });
+        angle.onRest = () => {
+            rests++;
+            normalise(angle);
+            angle.target = angle.value;
+        };
+        angle.target = 800;
+        for (let i = 0; i < 100; i++) angle.step(1 / 60);
+        assert.deepStrictEqual([angle.value, angle.target, angle.settled], [80, 80, true], name);
+        assert(rests <= 3, `${name}: ${rests} times`);
+    }
 });
 
 await test("clamp stops at the target, in long steps too", () => {
