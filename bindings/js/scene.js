@@ -29,9 +29,13 @@ const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
 const mismatch = 14;
-// Words of the header of a saved state, from its second on. ends: a hash of links, and with colliders of arrays of particles
-const headers =
-    "version,precision,axes,flags,methods,colliders,particles,links,weightedLinks,ends,force".split(",");
+// 64-bit words of the header of a saved state, from its second on. A hash covers the particles and flags of links, and with
+// colliders the arrays of radii, frictions and masks.
+const headers = [
+    ..."version,precision,axes,flags,methods,colliders,particles,links,weightedLinks".split(","),
+    "ends or arrays of particles",
+    "force",
+];
 const stepFailures = {
     [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
     [unstable]: ["a particle would be faster than maxSpeed, or not finite", "SPRING_EUNSTABLE"],
@@ -295,7 +299,7 @@ export class Scene {
             if (status === mismatch) {
                 const own = new Uint32Array(this.save().buffer, 0, 24);
                 const its = memory.uint32(pointer, 24);
-                const differs = (_, k) => own[2 * k + 2] !== its[2 * k + 2]; // low halves of words
+                const differs = (_, k) => [2, 3].some((half) => own[2 * k + half] !== its[2 * k + half]);
                 const other = headers.filter(differs).join(", ") || "damping";
                 what = `the state of a scene with this definition, not with other ${other}`;
             }
@@ -310,11 +314,11 @@ export class Scene {
         this.#call("spring_scene_set_time", this.#scene, t);
     }
 
-    /** The clock of frames, and the state before the last step, which is empty before the first frame. */
+    /** The clock of frames with alpha, and the state before the last step, which is empty before the first frame. */
     #frames() {
         const before = library().scene_before(this.#pointer);
         return [
-            memory.float64(library().scene_clock(this.#pointer), 2),
+            memory.float64(library().scene_clock(this.#pointer), 4),
             memory.float64(before, before ? this.axes * this.particles : 0),
         ];
     }

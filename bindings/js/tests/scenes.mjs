@@ -296,7 +296,8 @@ await test("states that are damaged or of other scenes are refused, and change n
         [{ heldForces: true, methods: ["leapfrog"] }, "flags, methods"],
         [{ force: () => {} }, "flags, force"],
         [{ axes: 1, gravity: [0], position: [0, 1, 2, 3, 4] }, "axes"],
-        [{ links: [two] }, "links, ends"],
+        [{ links: [two] }, "links, ends or arrays of particles"],
+        [{ links: { ...scene.getLinks(), ends: [0, 1, 1, 2, 2, 3, 1, 4] } }, "ends or arrays of particles"],
         [{ colliders: 3 }, "colliders"],
         [{ links: { ...scene.getLinks(), damping: 0 } }, "damping"],
     ])
@@ -307,6 +308,11 @@ await test("states that are damaged or of other scenes are refused, and change n
             rope(more).save(),
         );
     assert.throws(() => rope({ colliders: 1 }).load(state), RangeError);
+    const smooth = { colliders: 1, particleFriction: [0, 0, 0, 0, 0] };
+    assert.throws(
+        () => rope({ colliders: 1 }).load(rope(smooth).save()),
+        /other ends or arrays of particles,/,
+    );
     for (const wrong of [null, "text", [...state], new Float64Array(4)])
         assert.throws(() => scene.load(wrong), TypeError);
     assert.deepEqual(scene.save(), state);
@@ -999,6 +1005,12 @@ await test("snapshots include the clock of frames", () => {
         if (run % 2) scene.transform([2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
         scene.restore(saved);
         assert.deepEqual(scene.positions, shown);
+        if (run % 3 === 0) {
+            const move = () => scene.frame("leapfrog", 1e-3, 1); // fails
+            assert.throws(() => scene.frame("leapfrog", 1e-3, 0.01, { move }), TypeError);
+            assert.deepEqual(scene.positions, shown, "also those of a frame that fails");
+            scene.restore(saved);
+        }
         assert.deepEqual(play(frames.slice(6)), first);
         scene.free();
     }
