@@ -104,8 +104,9 @@ export class Springs {
     /** Without stiffness, a value rests anywhere. */
     #rests(i) {
         if (this.#velocity[i] !== 0 || this.#targetVelocity[i] !== 0) return false;
-        const away = this.#value[i] - this.#target[i];
-        return away === 0 || (isNumber(away) && !this.#propagator(i).omega2);
+        const [value, target] = [this.#value[i], this.#target[i]];
+        if (!isNumber(value) || !isNumber(target)) return false;
+        return value === target || !this.#propagator(i).omega2;
     }
 
     get clamp() {

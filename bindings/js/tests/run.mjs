@@ -870,6 +870,10 @@ await test("without stiffness a value settles where damping stops it", () => {
     let frames = 0;
     while (fresh.step(1 / 60) > 0) frames += late.step(1 / 60);
     assert(frames > 10 && late.step(1 / 60) === 0 && late.settled(0));
+    const far = new Springs(1, { stiffness: 0, damping: 5 });
+    far.value[0] = 1e308;
+    far.target[0] = -1e308;
+    assert(far.settled(0) && far.step(0.1) === 0, "also where their difference overflows");
     const wrong = new Springs(1, { stiffness: 0, damping: 5 });
     wrong.target[0] = NaN;
     assert(!wrong.settled(0));
