@@ -97,7 +97,7 @@ export type Force = (
     velocity: readonly Float64Array[] | undefined,
 ) => void;
 
-/** What every collider has. */
+/** What every collider has. Vectors have three numbers, or one for each axis of the scene. */
 export interface Body {
     /** [m] a point of the plane; the centre; or one end of a capsule; default [0, 0, 0] */
     at?: ArrayLike<number>;

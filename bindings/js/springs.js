@@ -14,7 +14,10 @@ function settingsOf(options, count) {
     for (const list of lists) {
         const [name, { length }] = list;
         check(length === count, `${name}.length`, `${count}`, length);
-        list[1] = options[name] = Array.from(list[1]);
+        list[1] = options[name] = Array.from(list[1], (each, i) => {
+            check(typeof each === "number", `${name}[${i}]`, "a number", each, TypeError);
+            return each;
+        });
     }
     if (lists.length === 0) return settings(options);
     return Array.from({ length: count }, (_, i) => {

@@ -1059,9 +1059,9 @@ await test("errors name field and value", () => {
     for (const Kind of [Spring, Springs]) {
         const one = new Kind(1);
         for (const [wrong, wanted] of [
-            [{ clamp: [true] }, "TypeError: clamp must be a boolean, got true"],
+            [{ clamp: [true] }, "TypeError: clamp must be a boolean, got [true]"],
             [{ clamp: 1 }, "TypeError: clamp must be a boolean, got 1"],
-            [{ onRest: [() => {}] }, "TypeError: onRest must be a function or null, got () => {}"],
+            [{ onRest: [() => {}] }, "TypeError: onRest must be a function or null, got [() => {}]"],
         ]) {
             refused(() => new Kind(1, wrong), wanted);
             refused(() => one.set(wrong), wanted);
@@ -1071,6 +1071,13 @@ await test("errors name field and value", () => {
         refused(() => (one.clamp = undefined), "TypeError: clamp must be a boolean, got null");
         assert.deepStrictEqual([one.clamp, one.onRest], [false, null]);
     }
+    for (const [value, shown] of [
+        [[2], "[2]"],
+        [Float64Array.of(2, 3), "[2,3]"],
+        [2n, "2n"],
+        ["2", '"2"'],
+    ])
+        refused(() => new Spring(value), `TypeError: value must be a finite number, got ${shown}`);
     refused(() => new Spring(NaN), "RangeError: value must be a finite number, got NaN");
     const s = new Spring(1, good);
     s.velocity = 2;
@@ -1090,6 +1097,14 @@ await test("errors name field and value", () => {
         () => new Springs(2, { ...good, damping: [1, -2] }),
         "RangeError: value 1: damping must be a finite number >= 0, got -2",
     );
+    for (const [wrong, wanted] of [
+        [{ hertz: [10, undefined] }, "hertz[1] must be a number, got undefined"],
+        [{ hertz: Object.assign(Array(2), { 1: 3 }) }, "hertz[0] must be a number, got undefined"],
+        [{ restSpeed: [1, null] }, "restSpeed[1] must be a number, got null"],
+        [{ restDelta: null }, "restDelta must be a finite number >= 0, got null"],
+    ])
+        refused(() => new Springs(2, wrong), `TypeError: ${wanted}`);
+    refused(spring({ restSpeed: null }), "TypeError: restSpeed must be a finite number >= 0, got null");
     refused(() => new Springs(2).settled(2), "RangeError: i must be the index of one of 2 values, got 2");
     const many = new Springs(3, good);
     many.target.set([1, NaN, 1]);
