@@ -25,9 +25,10 @@ export function animator({
 } = {}) {
     check(typeof request === "function", "request", "a function", request, TypeError);
     check(now === null || typeof now === "function", "now", "a function or null", now, TypeError);
-    const entries = new WeakMap(); // { spring, draws, time, stale, failure } of a spring
+    const entries = new WeakMap(); // { spring, draws, time, stale, shown, failure } of a spring
     const moving = new Set();
     let requested = false;
+    let drawing = false;
 
     function schedule() {
         if (!requested) request(frame);
@@ -36,10 +37,13 @@ export function animator({
 
     function wake(entry) {
         entry.stale = true;
+        if (!drawing) entry.shown = null;
         if (moving.has(entry)) return;
-        entry.failure = null;
+        if (!drawing) entry.failure = null;
         entry.time = now ? now() : null; // of the start, so that no frame is too long
         moving.add(entry);
+        // A draw function of another spring may only read the arrays. If it also writes, the values differ in the next frame.
+        if (drawing && entry.spring[moves]) entry.shown = entry.spring.value.slice();
         schedule();
     }
 
@@ -58,8 +62,8 @@ export function animator({
 
     /** Advances and draws one spring, and returns whether it moves on. */
     function advance(entry, dt, reduced) {
-        const { spring, draws } = entry;
-        entry.stale = false;
+        const { spring, draws, shown } = entry;
+        [entry.stale, entry.shown] = [false, null];
         let failure = null; // the message of step(), which is reported once if it fails in each frame; "": onRest() failed
         try {
             if (reduced && ![...draws].some(({ runs }) => runs)) spring.finish();
@@ -70,12 +74,14 @@ export function animator({
         }
         entry.failure = failure;
         const { value } = spring;
-        for (const { draw } of draws)
+        drawing = true;
+        for (const { draw } of shown?.every((x, i) => Object.is(x, value[i])) ? [] : draws)
             try {
                 draw(value, spring);
             } catch (error) {
                 report(error);
             }
+        drawing = false;
         // The callbacks may have written to the arrays of Springs.
         return spring[moves]?.() ?? (entry.stale || (failure === null && !spring.settled));
     }
@@ -88,13 +94,14 @@ export function animator({
         check(known, "reducedMotion", '"jump" or "run"', reducedMotion, TypeError);
         let entry = entries.get(spring);
         if (!entry) {
-            entry = { spring, draws: new Set(), time: null, stale: false, failure: null };
+            entry = { spring, draws: new Set(), time: null, stale: false, shown: null, failure: null };
             watch(spring, () => wake(entry));
             entries.set(spring, entry);
         }
         const mine = { draw, runs: reducedMotion === "run" };
         entry.draws.add(mine);
-        wake(entry); // to draw it once
+        wake(entry);
+        entry.shown = null; // to draw it once
         return function stop() {
             entry.draws.delete(mine);
             if (entry.draws.size > 0 || entries.get(spring) !== entry) return;

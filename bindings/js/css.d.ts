@@ -9,7 +9,7 @@ import type { SpringParameters } from "./index.js";
  *
  * @param options parameters only: an easing does not stop at its target, and has no tolerances of its own
  * @param velocity of the start, in ways per second; default 0
- * @returns `duration` in milliseconds, and `easing`: `linear(0, 0.0088 1.65%, ..., 1)`
+ * @returns `duration` in milliseconds, and `easing`: `linear(0, 0.009 1.8%, ..., 1)`
  */
 export declare function linear(
     options?: SpringParameters & { [K in "restDelta" | "restSpeed" | "clamp" | "onRest"]?: never },

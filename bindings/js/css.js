@@ -5,7 +5,7 @@ import { abs, epsilon, max, min, sqrt } from "./elementary.js";
 import { checkFinite, settings } from "./options.js";
 import { restTime } from "./settling.js";
 
-const cells = 2000; // into which the duration is divided; a point is at the end of a cell
+const cells = 2500; // into which the duration is divided; a point is at the end of a cell
 const tolerance = 0.0018; // of the way; the rest of 0.002 is for the digits of a point, and for the curve within a cell
 
 export function linear(options = {}, velocity = 0) {

@@ -15,7 +15,7 @@ const names = [
 export const checkCount = (name, value, least = 0) =>
     check(Number.isSafeInteger(value) && value >= least, name, `an integer >= ${least}`, value);
 
-function checkUpTo(name, value, most) {
+export function checkUpTo(name, value, most) {
     const good = value >= 0 && value <= most && Number.isInteger(value);
     check(good, name, `an integer from 0 to ${most}`, value);
 }
@@ -31,11 +31,15 @@ export function checkArray(name, value, length) {
     check(length === undefined || value.length === length, `${name}.length`, `${length}`, value?.length);
 }
 
-/** Gravity may omit the axes that a scene does not have. */
-export function checkGravity(gravity, axes) {
-    checkArray("gravity", gravity);
-    const { length } = gravity;
-    check(length === 3 || length === axes, "gravity.length", `${axes}${axes < 3 ? " or 3" : ""}`, length);
+export function checkNumbers(name, values) {
+    for (let i = 0; i < values.length; i++) checkFinite(`${name}[${i}]`, values[i]);
+}
+
+/** A vector may omit the axes that a scene does not have. */
+export function checkVector(name, vector, axes) {
+    checkArray(name, vector);
+    const { length } = vector;
+    check(length === 3 || length === axes, `${name}.length`, `${axes}${axes < 3 ? " or 3" : ""}`, length);
 }
 
 let table; // of methods, by name
@@ -100,8 +104,8 @@ function linkValue(links, i, field) {
     return typeof value === "number" ? value : value[i];
 }
 
-/** Links in the layout of spring_link: [pointer, count]. */
-export function lendLinks(take, links) {
+/** Links in the layout of spring_link: [pointer, count]. Messages name the first of them `links[first]`. */
+export function lendLinks(take, links, first = 0) {
     const count = countOf(links);
     const pointer = take(linkBytes * count);
     const ends = memory.uint32(pointer, 10 * count);
@@ -109,18 +113,19 @@ export function lendLinks(take, links) {
     for (let i = 0; i < count; i++)
         for (const [k, field] of ["a", "b"].entries()) {
             const end = linkValue(links, i, field);
-            check(Number.isInteger(end) && end >= 0, `links[${i}].${field}`, "the index of a particle", end);
+            const place = `links[${first + i}].${field}`;
+            check(Number.isInteger(end) && end >= 0, place, "the index of a particle", end);
             ends[10 * i + k] = Math.min(end, 0xffffffff);
         }
     for (const [k, field] of perLink.entries())
         for (let i = 0; i < count; i++) {
             const value = linkValue(links, i, field);
-            check(typeof value === "number", `links[${i}].${field}`, "a number", value, TypeError);
+            check(typeof value === "number", `links[${first + i}].${field}`, "a number", value, TypeError);
             values[5 * i + 1 + k] = value;
         }
     for (let i = 0; i < count; i++) {
         const value = linkValue(links, i, "flags");
-        check([0, 1, 2, 3].includes(value), `links[${i}].flags`, "0, TENSION_ONLY or TETHER", value);
+        check([0, 1, 2, 3].includes(value), `links[${first + i}].flags`, "0, TENSION_ONLY or TETHER", value);
         ends[10 * i + 8] = value;
     }
     return [pointer, count];
@@ -213,7 +218,7 @@ export const wanted = {
 export function refuseLink(links, i, index, now) {
     const [a, b, ...values] = ["a", "b", ...perLink].map((field) => linkValue(links, i, field));
     const same = [now.a, now.b].includes(a) && a + b === now.a + now.b;
-    check(same, `ends of link ${index}`, `${now.a} and ${now.b}`, `${a}, ${b}`, RangeError);
+    check(same, `ends of link ${index}`, `${now.a} and ${now.b}`, [a, b], RangeError);
     let k = values.findIndex((value) => !(value >= 0 && value < Infinity));
     if (k < 0) k = values[1] < values[2] ? 2 : 1; // too large for a mass
     check(false, `${perLink[k]} of link ${index}`, wanted[perLink[k]], values[k]);
@@ -254,8 +259,8 @@ function unit([x, y = 0, z = 0]) {
     return most > 0 && most < Infinity ? unit(over(most)) : null;
 }
 
-/** Colliders in the layout of spring_collider. */
-export function lendColliders(take, colliders) {
+/** Colliders in the layout of spring_collider, of a scene with so many axes. */
+export function lendColliders(take, colliders, axes) {
     const pointer = take(colliderBytes * colliders.length);
     colliders.forEach((collider, i) => {
         const name = `colliders[${i}]`;
@@ -270,19 +275,20 @@ export function lendColliders(take, colliders) {
             if (collider[field] === undefined) throw new TypeError(`${name}.${field} is required`);
         const numbers = [];
         for (const [field, count, usual] of fields) {
-            const value = collider[field] ?? usual ?? collider.velocity ?? [0, 0, 0];
-            const list = count === 1 ? [value] : value;
-            if (count > 1) checkArray(`${name}.${field}`, list);
-            for (let k = 0; k < count; k++) {
-                const number = k < list.length ? list[k] : 0;
-                checkFinite(count > 1 ? `${name}.${field}[${k}]` : `${name}.${field}`, number);
-                numbers.push(number);
+            const { [field]: value = usual ?? collider.velocity ?? [0, 0, 0] } = collider;
+            const place = `${name}.${field}`;
+            if (count === 1) checkFinite(place, value);
+            else {
+                if (count === 3) checkVector(place, value, axes);
+                else checkArray(place, value, count);
+                checkNumbers(place, value);
             }
+            for (let k = 0; k < count; k++) numbers.push(count === 1 ? value : (value[k] ?? 0));
             if (field === "axes" && shape === 0) {
-                const normal = collider.normal ?? [0, 1, 0];
-                checkArray(`${name}.normal`, normal);
+                const { normal = [0, 1, 0] } = collider;
+                checkVector(`${name}.normal`, normal, axes);
                 const direction = unit(normal);
-                check(direction, `${name}.normal`, "a direction", String(normal), RangeError);
+                check(direction, `${name}.normal`, "a direction", normal, RangeError);
                 numbers.splice(6, 3, ...direction);
             }
         }
@@ -303,15 +309,8 @@ export function refuseCollider(colliders, pointer) {
     const collider = colliders[i];
     let field = text(name);
     if (field === "axis") field = collider.shape === "plane" ? "normal" : "axes";
-    const value = collider[field];
     const what = wanted[nameOf[field] ?? field] ?? "smaller";
-    check(
-        false,
-        `colliders[${i}].${field}`,
-        what,
-        typeof value === "number" ? value : String(value),
-        RangeError,
-    );
+    check(false, `colliders[${i}].${field}`, what, collider[field], RangeError);
 }
 
 /** Colliders from that layout. */
@@ -352,7 +351,7 @@ function refuse(definition, axes) {
     if (array === "weighted_link") {
         const what = { particle: "indices of different particles", weight: "finite numbers whose sum is 0" };
         const { [part]: values, particles, weights } = definition.weightedLinks;
-        const row = (list) => Array.from(list.slice(4 * i, 4 * i + 4)).join();
+        const row = (list) => list.slice(4 * i, 4 * i + 4);
         const value =
             part === "particle" ? row(particles) : part === "weight" ? row(weights) : (values?.[i] ?? values);
         check(false, `weightedLinks[${i}].${part}`, what[part] ?? wanted[part], value, RangeError);
@@ -386,21 +385,20 @@ export function define(take, definition) {
     const particles = length / axes;
     if (count !== undefined) {
         checkArray("count", count, 3);
-        check(
-            count[0] * count[1] * count[2] === particles,
-            "count",
-            "that of all particles",
-            String(count),
-            RangeError,
-        );
+        Array.from(count, (each, i) => checkCount(`count[${i}]`, each, 1));
+        const all = count[0] * count[1] * count[2] === particles;
+        check(all, "count", "that of all particles", count, RangeError);
     }
     if (velocity) checkArray("velocity", velocity, position.length);
     if (pinned) checkArray("pinned", pinned, particles);
     if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
     else checkArray("mass", mass, particles);
-    checkGravity(gravity, axes);
+    checkVector("gravity", gravity, axes);
     checkArray("methods", methods);
-    if (base) checkArray("base", base, 3 * particles);
+    if (base) {
+        checkArray("base", base, 3 * particles);
+        checkNumbers("base", base);
+    }
     checkUpTo("component", component, 3 - axes);
     check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
     let set = forceUsesVelocity ? 0 : forceIgnoresVelocity; // also without a force, which may be set later

@@ -2,7 +2,7 @@
 // Ropes, sheets and soft bodies, softer links, and the pieces of torn scenes.
 import { define, checkArray, checkCount, checkKnown, lendLinks, linkBytes, linksAt } from "./definition.js";
 import { borrowed, library, memory } from "./module.js";
-import { check, isNumber } from "./options.js";
+import { check, checkNotNegative, checkPositive, isNumber } from "./options.js";
 
 const families = { structural: 1, shear: 2, bend: 4 };
 const faces = { firstX: 1, lastX: 2, firstY: 4, lastY: 8, firstZ: 16, lastZ: 32 };
@@ -31,10 +31,8 @@ export function grid(definition) {
     [x, y, z].forEach((each, i) => checkCount(`count[${i}]`, each, 1));
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
     const positive = { spacing, stretch };
-    for (const [name, value] of Object.entries(positive))
-        check(isNumber(value) && value > 0, name, "a finite number > 0", value);
-    for (const [name, value] of Object.entries({ stiffness, damping }))
-        check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
+    for (const [name, value] of Object.entries(positive)) checkPositive(name, value);
+    for (const [name, value] of Object.entries({ stiffness, damping })) checkNotNegative(name, value);
     if (height) check(axes === 1, "axes", "1 for a height field", axes);
     else
         [x, y, z].forEach((each, i) =>
@@ -49,7 +47,7 @@ export function grid(definition) {
         const status = fits
             ? grid_begin(x, y, z, axes, height, spacing, stretch, bits[0], stiffness, damping, bits[1], size)
             : 1;
-        check(status === 0, "count", "small enough for 32-bit indices", `${x} x ${y} x ${z}`, RangeError);
+        check(status === 0, "count", "small enough for 32-bit indices", [x, y, z], RangeError);
         const [particles, links] = memory.uint32(size, 2);
         const position = take(8 * particles * axes);
         const pins = take(particles);
@@ -105,7 +103,7 @@ export function textureCoordinates([x, y, z]) {
 
 /** The links of a definition, with less stiffness where leapfrog would need steps shorter than dt. */
 export function soften(definition, dt, fraction = 0.5) {
-    check(isNumber(dt) && dt > 0, "dt", "a finite number > 0", dt);
+    checkPositive("dt", dt);
     check(isNumber(fraction) && fraction > 0 && fraction <= 1, "fraction", "a number > 0 and <= 1", fraction);
     return borrowed((take) => {
         const { linkPointer, links } = define(take, definition);

@@ -4,6 +4,7 @@ import {
     checkArray,
     checkCount,
     checkKnown,
+    checkNumbers,
     define,
     lend,
     linkBytes,
@@ -12,7 +13,7 @@ import {
     weightedLinksAt,
 } from "./definition.js";
 import { borrowed, library, memory } from "./module.js";
-import { check, checkFinite, isNumber } from "./options.js";
+import { check, checkNotNegative, checkPositive, isNumber } from "./options.js";
 
 /** Values of `flags` of a link. */
 export const TENSION_ONLY = 1;
@@ -21,8 +22,7 @@ export const TETHER = 2;
 function checkBend(rigidity, options, known) {
     checkKnown(options, known);
     const { dampingTime = 0 } = options;
-    for (const [name, value] of Object.entries({ rigidity, dampingTime }))
-        check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
+    for (const [name, value] of Object.entries({ rigidity, dampingTime })) checkNotNegative(name, value);
     return dampingTime;
 }
 
@@ -37,8 +37,7 @@ const flagsOf = (take, pinned, particles) => {
 function counted(take, bytes, make, name, what) {
     const count = take(4);
     const call = (out) => {
-        const status = make(out, count);
-        check(status === 0, name, what, status, RangeError);
+        if (make(out, count) !== 0) throw new RangeError(`${name} must be ${what}`);
         return memory.uint32(count, 1)[0];
     };
     const pointer = take(bytes * call(0));
@@ -69,8 +68,8 @@ export function bendGrid(definition, rigidity, options = {}) {
     checkArray("count", count);
     const [x, y = 1, z = 1] = count;
     [x, y, z].forEach((each, i) => checkCount(`count[${i}]`, each, 1));
-    check(isNumber(spacing) && spacing > 0, "spacing", "a finite number > 0", spacing);
-    check(x * y * z < 2 ** 32, "count", "small enough for 32-bit indices", `${x} x ${y} x ${z}`, RangeError);
+    checkPositive("spacing", spacing);
+    check(x * y * z < 2 ** 32, "count", "small enough for 32-bit indices", [x, y, z], RangeError);
     return borrowed((take) => {
         const pins = flagsOf(take, pinned, x * y * z);
         library().grid_begin(x, y, z, 3, false, spacing, 1, 1, 0, 0, 0, take(8));
@@ -97,7 +96,7 @@ function lendTriangles(take, triangles) {
 function lendVertices(take, position) {
     checkArray("position", position);
     check(position.length % 3 === 0, "position.length", "a multiple of 3", position.length);
-    for (let i = 0; i < position.length; i++) checkFinite(`position[${i}]`, position[i]);
+    checkNumbers("position", position);
     return lend(take, position);
 }
 
@@ -117,8 +116,8 @@ export function bendMesh(position, triangles, rigidity, options = {}) {
 }
 
 export function tethers(definition, fraction = 0.05, slack = 0) {
-    check(isNumber(fraction) && fraction > 0, "fraction", "a finite number > 0", fraction);
-    check(isNumber(slack) && slack >= 0, "slack", "a finite number >= 0", slack);
+    checkPositive("fraction", fraction);
+    checkNotNegative("slack", slack);
     return borrowed((take) => {
         const { axes, particles, links, linkPointer } = define(take, definition);
         check(axes > 1, "axes", "2 or 3 for tethers", axes);
@@ -134,8 +133,7 @@ export function tethers(definition, fraction = 0.05, slack = 0) {
 export function fromMesh(definition) {
     checkKnown(definition, ["position", "triangles", "stiffness", "damping", "weld"]);
     const { position, triangles, stiffness, damping = 0, weld = 0 } = definition;
-    for (const [name, value] of Object.entries({ stiffness, damping }))
-        check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
+    for (const [name, value] of Object.entries({ stiffness, damping })) checkNotNegative(name, value);
     check(weld === null || (isNumber(weld) && weld >= 0), "weld", "null or a finite number >= 0", weld);
     return borrowed((take) => {
         const [x, corners] = [lendVertices(take, position), lendTriangles(take, triangles)];

@@ -7,15 +7,18 @@ import { timeWithin } from "./settling.js";
 /** Throws unless `holds`: `stiffness must be a finite number >= 0, got NaN`. */
 export function check(holds, name, what, value, Kind = typeof value === "number" ? RangeError : TypeError) {
     if (holds) return;
-    const shown = typeof value === "string" ? `"${value}"` : String(value);
+    let shown = String(value);
+    if (typeof value === "string") shown = `"${value}"`;
+    if (typeof value === "bigint") shown += "n";
+    if (value?.join) shown = `[${value}]`;
     throw new Kind(`${name} must be ${what}, got ${shown}`);
 }
 
 export const isNumber = Number.isFinite;
 export const checkFinite = (name, value) => check(isNumber(value), name, "a finite number", value);
-const checkNotNegative = (name, value) =>
+export const checkNotNegative = (name, value) =>
     check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
-const checkPositive = (name, value) =>
+export const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 
 /** The decay rate of the slowest mode, in units of omega. */
@@ -62,9 +65,9 @@ export function merged(options, before) {
  */
 export function settings(options, before = {}, others = ["restDelta", "restSpeed", "clamp", "onRest"]) {
     const given = merged(options, before);
-    const { restDelta, restSpeed, clamp = false, onRest = null } = given;
-    checkNotNegative("restDelta", restDelta ?? 0);
-    checkNotNegative("restSpeed", restSpeed ?? 0);
+    const { restDelta = 0, restSpeed = 0, clamp = false, onRest = null } = given;
+    checkNotNegative("restDelta", restDelta);
+    checkNotNegative("restSpeed", restSpeed);
     const way = wayOf(given) ?? "duration";
     const [omegaOf, ...further] = ways[way];
     const [second] = further;
@@ -95,6 +98,6 @@ export function settings(options, before = {}, others = ["restDelta", "restSpeed
     checkFinite("stiffness / mass", stiffness / mass);
     checkFinite("damping / mass", damping / mass);
     const p = new Propagator(stiffness, damping, mass);
-    const tolerances = (size) => [restDelta ?? size / 1e4, restSpeed ?? size / 1e3];
+    const tolerances = (size) => [given.restDelta ?? size / 1e4, given.restSpeed ?? size / 1e3];
     return { given, p, tolerances, clamp, onRest };
 }

@@ -3,8 +3,10 @@
 import {
     checkArray,
     checkCount,
-    checkGravity,
     checkKnown,
+    checkNumbers,
+    checkUpTo,
+    checkVector,
     colliderBytes,
     collidersAt,
     define,
@@ -20,7 +22,7 @@ import {
 } from "./definition.js";
 import { components, textureCoordinates, triangles } from "./grid.js";
 import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
-import { check, checkFinite, isNumber } from "./options.js";
+import { check, checkFinite, checkPositive } from "./options.js";
 
 const quantities = ["position", "velocity", "force"];
 const notFinite = 2;
@@ -29,9 +31,13 @@ const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
 const mismatch = 14;
-// Words of the header of a saved state, from its second on. ends: a hash of links, and with colliders of arrays of particles
-const headers =
-    "version,precision,axes,flags,methods,colliders,particles,links,weightedLinks,ends,force".split(",");
+// 64-bit words of the header of a saved state, from its second on. A hash covers the particles and flags of links, and with
+// colliders the arrays of radii, frictions and masks.
+const headers = [
+    ..."version,precision,axes,flags,methods,colliders,particles,links,weightedLinks".split(","),
+    "ends or arrays of particles",
+    "force",
+];
 const stepFailures = {
     [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
     [unstable]: ["a particle would be faster than maxSpeed, or not finite", "SPRING_EUNSTABLE"],
@@ -119,7 +125,7 @@ export class Scene {
 
     #frame(method, dt, elapsed, options) {
         const number = methodNumber(method);
-        check(isNumber(dt) && dt > 0, "dt", "a finite number > 0", dt);
+        checkPositive("dt", dt);
         checkFinite("elapsed", elapsed);
         checkKnown(options, ["mostSteps", "move"]);
         const { mostSteps = Math.max(1, Math.floor(0.25 / dt)), move = null } = options;
@@ -198,7 +204,7 @@ export class Scene {
         const count = values.length / this.axes;
         check(Number.isInteger(count), `${quantity}.length`, `a multiple of ${this.axes}`, values.length);
         this.#checkRange(first, count, this.particles);
-        for (let i = 0; i < values.length; i++) checkFinite(`${quantity}[${i}]`, values[i]);
+        checkNumbers(quantity, values);
         borrowed((take) => {
             const pointer = lend(take, values);
             this.#changed(this.#call("spring_scene_set", this.#scene, number, pointer, 0, first, count));
@@ -222,7 +228,7 @@ export class Scene {
     transform(matrix) {
         checkArray("matrix", matrix);
         check([12, 16].includes(matrix.length), "matrix.length", "12 or 16", matrix.length);
-        for (let i = 0; i < matrix.length; i++) checkFinite(`matrix[${i}]`, matrix[i]);
+        checkNumbers("matrix", matrix);
         const rows =
             matrix.length === 12
                 ? matrix
@@ -234,8 +240,8 @@ export class Scene {
     }
 
     setGravity(gravity) {
-        checkGravity(gravity, this.axes);
-        for (let i = 0; i < gravity.length; i++) checkFinite(`gravity[${i}]`, gravity[i]);
+        checkVector("gravity", gravity, this.axes);
+        checkNumbers("gravity", gravity);
         const [x = 0, y = 0, z = 0] = gravity;
         borrowed((take) => this.#call("spring_scene_set_gravity", this.#scene, lend(take, [x, y, z])));
     }
@@ -295,7 +301,7 @@ export class Scene {
             if (status === mismatch) {
                 const own = new Uint32Array(this.save().buffer, 0, 24);
                 const its = memory.uint32(pointer, 24);
-                const differs = (_, k) => own[2 * k + 2] !== its[2 * k + 2]; // low halves of words
+                const differs = (_, k) => [2, 3].some((half) => own[2 * k + half] !== its[2 * k + half]);
                 const other = headers.filter(differs).join(", ") || "damping";
                 what = `the state of a scene with this definition, not with other ${other}`;
             }
@@ -310,11 +316,11 @@ export class Scene {
         this.#call("spring_scene_set_time", this.#scene, t);
     }
 
-    /** The clock of frames, and the state before the last step, which is empty before the first frame. */
+    /** The clock of frames with alpha, and the state before the last step, which is empty before the first frame. */
     #frames() {
         const before = library().scene_before(this.#pointer);
         return [
-            memory.float64(library().scene_clock(this.#pointer), 2),
+            memory.float64(library().scene_clock(this.#pointer), 4),
             memory.float64(before, before ? this.axes * this.particles : 0),
         ];
     }
@@ -341,8 +347,8 @@ export class Scene {
         this.#checkIndex("particle", particle, this.particles);
         if (target !== null) {
             checkArray("target", target, this.axes);
-            for (let i = 0; i < this.axes; i++) checkFinite(`target[${i}]`, target[i]);
-            check(isNumber(duration) && duration > 0, "duration", "a finite number > 0", duration);
+            checkNumbers("target", target);
+            checkPositive("duration", duration);
         }
         borrowed((take) => {
             const pointer = target === null ? 0 : lend(take, target);
@@ -354,8 +360,7 @@ export class Scene {
     setMass(mass, first = 0) {
         checkArray("mass", mass);
         this.#checkRange(first, mass.length, this.particles);
-        for (let i = 0; i < mass.length; i++)
-            check(isNumber(mass[i]) && mass[i] > 0, `mass[${i}]`, "a finite number > 0", mass[i]);
+        for (let i = 0; i < mass.length; i++) checkPositive(`mass[${i}]`, mass[i]);
         borrowed((take) => {
             this.#edit("spring_scene_set_mass", first, mass.length, lend(take, mass), 8, (i) =>
                 check(false, `mass[${i}]`, `${wanted.mass}, also times stiffness or drag`, mass[i]),
@@ -384,12 +389,16 @@ export class Scene {
     }
 
     setLink(index, changes) {
-        this.setLinks([{ ...this.getLink(index), ...changes }], index);
+        this.#setLinks([{ ...this.getLink(index), ...changes }], index, index);
     }
 
     setLinks(links, first = 0) {
+        this.#setLinks(links, first);
+    }
+
+    #setLinks(links, first, named) {
         borrowed((take) => {
-            const [pointer, count] = lendLinks(take, links);
+            const [pointer, count] = lendLinks(take, links, named);
             this.#checkRange(first, count, this.links);
             this.#edit("spring_scene_set_links", first, count, pointer, linkBytes, (i) =>
                 refuseLink(links, i, first + i, this.getLink(first + i)),
@@ -436,7 +445,7 @@ export class Scene {
         checkArray("colliders", colliders);
         const list = Array.from(colliders);
         borrowed((take) => {
-            const pointer = lendColliders(take, list);
+            const pointer = lendColliders(take, list, this.axes);
             const status = this.#call("spring_scene_set_colliders", this.#scene, pointer, list.length);
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
             check(status !== outOfRange, "colliders.length", "at most what the definition has", list.length);
@@ -539,7 +548,7 @@ export class Scene {
     }
 
     #checkRange(first, count, all) {
-        checkCount("first", first);
+        checkUpTo("first", first, all);
         checkCount("count", count);
         check(first + count <= all, "first + count", `at most ${all}`, first + count);
     }

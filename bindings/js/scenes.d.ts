@@ -87,7 +87,8 @@ export interface LinkArrays {
  * Adds forces to force[axis][particle] [N] at the time t [s]. It must depend only on its arguments and on data that has not
  * changed since `scene.force` was set. It must not call its own scene. It should not create scenes or grids, or copy arrays of
  * other scenes: if the memory of the WebAssembly grows meanwhile, the arrays are lost. If that happens, if it throws, or if it is
- * async, the call fails and the scene stays as it was.
+ * async, the call fails and the scene stays as it was (unless it has `noUndo`). advance() of a scene whose particles are all
+ * pinned also fails then, but completes its steps first.
  */
 export type Force = (
     t: number,
@@ -96,7 +97,7 @@ export type Force = (
     velocity: readonly Float64Array[] | undefined,
 ) => void;
 
-/** What every collider has. */
+/** What every collider has. Vectors have three numbers, or one for each axis of the scene. */
 export interface Body {
     /** [m] a point of the plane; the centre; or one end of a capsule; default [0, 0, 0] */
     at?: ArrayLike<number>;

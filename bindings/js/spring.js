@@ -42,6 +42,7 @@ export class Spring {
 
     set value(value) {
         checkFinite("value", value);
+        if (value === this.#value && this.#resting) return; // as for the target
         this.#value = value;
         this.#moves();
     }
@@ -126,10 +127,10 @@ export class Spring {
 
     finish() {
         if (this.#settled) return;
+        changed(this); // before onRest(), which may throw
         this.#place(
             this.#settings.p.restPlace(this.#value, this.#velocity - this.#targetVelocity, this.#target),
         );
-        changed(this);
     }
 
     settlingTime() {
@@ -180,13 +181,14 @@ export class Spring {
         this.#value = value;
         this.#velocity = this.#targetVelocity;
         if (this.#velocity) return value;
+        const resting = this.#resting; // jump() and finish() in onRest()
         this.#settled = this.#resting = true;
         this.#finished = null;
         this.#finish?.();
         try {
             if (tells) this.onRest?.(this);
         } finally {
-            this.#resting = false;
+            this.#resting = resting;
         }
         return this.#value;
     }

@@ -14,7 +14,10 @@ function settingsOf(options, count) {
     for (const list of lists) {
         const [name, { length }] = list;
         check(length === count, `${name}.length`, `${count}`, length);
-        list[1] = options[name] = Array.from(list[1]);
+        list[1] = options[name] = Array.from(list[1], (each, i) => {
+            check(typeof each === "number", `${name}[${i}]`, "a number", each, TypeError);
+            return each;
+        });
     }
     if (lists.length === 0) return settings(options);
     return Array.from({ length: count }, (_, i) => {
@@ -104,8 +107,9 @@ export class Springs {
     /** Without stiffness, a value rests anywhere. */
     #rests(i) {
         if (this.#velocity[i] !== 0 || this.#targetVelocity[i] !== 0) return false;
-        const away = this.#value[i] - this.#target[i];
-        return away === 0 || (isNumber(away) && !this.#propagator(i).omega2);
+        const [value, target] = [this.#value[i], this.#target[i]];
+        if (!isNumber(value) || !isNumber(target)) return false;
+        return value === target || !this.#propagator(i).omega2;
     }
 
     get clamp() {

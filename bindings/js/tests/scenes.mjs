@@ -152,10 +152,15 @@ await test("triangles of grids: areas, orientation, texture coordinates", () => 
         () => new Scene({ position: [0, 0, 0] }).triangles(),
         "TypeError: the scene is defined without the count of a grid",
     );
-    refused(
-        () => new Scene({ ...grid({ count: [3], spacing: 1, stiffness: 1 }), count: [2, 1, 1] }),
-        'RangeError: count must be that of all particles, got "2,1,1"',
-    );
+    for (const [count, wanted] of [
+        [[2, 1, 1], "count must be that of all particles, got [2,1,1]"],
+        [[1.5, 2, 1], "count[0] must be an integer >= 1, got 1.5"],
+        [[3, -1, -1], "count[1] must be an integer >= 1, got -1"],
+    ])
+        refused(
+            () => new Scene({ ...grid({ count: [3], spacing: 1, stiffness: 1 }), count }),
+            `RangeError: ${wanted}`,
+        );
 });
 
 await test("frame(elapsed) has defaults for method and step", () => {
@@ -296,7 +301,8 @@ await test("states that are damaged or of other scenes are refused, and change n
         [{ heldForces: true, methods: ["leapfrog"] }, "flags, methods"],
         [{ force: () => {} }, "flags, force"],
         [{ axes: 1, gravity: [0], position: [0, 1, 2, 3, 4] }, "axes"],
-        [{ links: [two] }, "links, ends"],
+        [{ links: [two] }, "links, ends or arrays of particles"],
+        [{ links: { ...scene.getLinks(), ends: [0, 1, 1, 2, 2, 3, 1, 4] } }, "ends or arrays of particles"],
         [{ colliders: 3 }, "colliders"],
         [{ links: { ...scene.getLinks(), damping: 0 } }, "damping"],
     ])
@@ -307,6 +313,11 @@ await test("states that are damaged or of other scenes are refused, and change n
             rope(more).save(),
         );
     assert.throws(() => rope({ colliders: 1 }).load(state), RangeError);
+    const smooth = { colliders: 1, particleFriction: [0, 0, 0, 0, 0] };
+    assert.throws(
+        () => rope({ colliders: 1 }).load(rope(smooth).save()),
+        /other ends or arrays of particles,/,
+    );
     for (const wrong of [null, "text", [...state], new Float64Array(4)])
         assert.throws(() => scene.load(wrong), TypeError);
     assert.deepEqual(scene.save(), state);
@@ -738,7 +749,7 @@ await test("colliders at their present places", () => {
 await test("normals: unit vectors of any length, which stay as they are", () => {
     const scene = new Scene({ position: [9, 9, 9], colliders: 1 });
     const normalOf = (normal) =>
-        borrowed((take) => [...memory.float64(lendColliders(take, [{ shape: "plane", normal }]) + 56, 3)]);
+        borrowed((take) => [...memory.float64(lendColliders(take, [{ shape: "plane", normal }], 2) + 56, 3)]);
     for (let i = 0; i < 3000; i++) {
         const size = 10 ** (chance(0.5) ? uniform(-307, 307) : uniform(-2, 2));
         const normal = Array.from({ length: chance(0.3) ? 2 : 3 }, () => size * uniform(-1, 1));
@@ -756,7 +767,7 @@ await test("normals: unit vectors of any length, which stay as they are", () => 
         );
         assert.deepEqual(normalOf(unit), unit);
         if (i % 10) continue;
-        scene.setColliders([{ shape: "plane", normal }]);
+        scene.setColliders([{ shape: "plane", normal: [x, y, z] }]);
         const colliders = scene.getColliders();
         assert.deepEqual(colliders[0].normal, unit);
         scene.setColliders(colliders);
@@ -872,7 +883,7 @@ await test("contacts: shapes, motion, friction, which touch", () => {
         [{ shape: "plane", at: [0, NaN] }, "RangeError: colliders[0].at[1] must be a finite number, got NaN"],
         [
             { shape: "plane", normal: [0, 0, 0] },
-            'RangeError: colliders[0].normal must be a direction, got "0,0,0"',
+            "RangeError: colliders[0].normal must be a direction, got [0,0,0]",
         ],
         [
             { shape: "plane", restitution: 2 },
@@ -880,11 +891,11 @@ await test("contacts: shapes, motion, friction, which touch", () => {
         ],
         [
             { shape: "box", half: [-1, 1, 1] },
-            'RangeError: colliders[0].half must be numbers >= 0, got "-1,1,1"',
+            "RangeError: colliders[0].half must be numbers >= 0, got [-1,1,1]",
         ],
         [
             { shape: "plane", normal: [0, 0, 1] },
-            'RangeError: colliders[0].normal must be a direction in the plane of the scene, got "0,0,1"',
+            "RangeError: colliders[0].normal must be a direction in the plane of the scene, got [0,0,1]",
         ],
         [
             { shape: "plane", friction: -1 },
@@ -892,7 +903,15 @@ await test("contacts: shapes, motion, friction, which touch", () => {
         ],
         [
             { shape: "box", half: [1, 1], axes: [1, 0, 0, 1, 0, 0, 0, 0, 1] },
-            'RangeError: colliders[0].axes must be orthonormal to 1e-3, got "1,0,0,1,0,0,0,0,1"',
+            "RangeError: colliders[0].axes must be orthonormal to 1e-3, got [1,0,0,1,0,0,0,0,1]",
+        ],
+        [{ shape: "box", half: [1] }, "RangeError: colliders[0].half.length must be 2 or 3, got 1"],
+        [{ shape: "plane", at: [] }, "RangeError: colliders[0].at.length must be 2 or 3, got 0"],
+        [{ shape: "plane", at: null }, "TypeError: colliders[0].at must be an array, got null"],
+        [{ shape: "plane", normal: null }, "TypeError: colliders[0].normal must be an array, got null"],
+        [
+            { shape: "box", half: [1, 1], axes: [1, 0, 0, 1] },
+            "RangeError: colliders[0].axes.length must be 9, got 4",
         ],
         [{ shape: "box", colour: 1 }, "TypeError: the option colour is unknown"],
         [{ shape: "sphere" }, "TypeError: colliders[0].radius is required"],
@@ -911,6 +930,10 @@ await test("contacts: shapes, motion, friction, which touch", () => {
         [() => flat.advance("euler", 1e-3), "TypeError: the method euler does not support colliders"],
         [() => none.setColliders([sphere]), "TypeError: the scene is defined without colliders"],
         [() => none.touching(), "TypeError: the scene is defined without colliders"],
+        [
+            () => new Scene({ position: [0, 0, 0], colliders: 1 }).setColliders([{ ...sphere, at: [0, 0] }]),
+            "RangeError: colliders[0].at.length must be 3, got 2",
+        ],
         [
             () => new Scene({ axes: 1, position: [0], colliders: 1 }),
             "RangeError: axes must be 2 or 3 with colliders, got 1",
@@ -999,6 +1022,12 @@ await test("snapshots include the clock of frames", () => {
         if (run % 2) scene.transform([2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
         scene.restore(saved);
         assert.deepEqual(scene.positions, shown);
+        if (run % 3 === 0) {
+            const move = () => scene.frame("leapfrog", 1e-3, 1); // fails
+            assert.throws(() => scene.frame("leapfrog", 1e-3, 0.01, { move }), TypeError);
+            assert.deepEqual(scene.positions, shown, "also those of a frame that fails");
+            scene.restore(saved);
+        }
         assert.deepEqual(play(frames.slice(6)), first);
         scene.free();
     }
@@ -1058,6 +1087,8 @@ await test("errors name field and value, and change nothing", () => {
         [{ tensionOnly: "no" }, 'TypeError: tensionOnly must be a boolean, got "no"'],
         [{ forceUsesVelocity: 1 }, "TypeError: forceUsesVelocity must be a boolean, got 1"],
         [{ component: 2 }, "RangeError: component must be an integer from 0 to 1, got 2"],
+        [{ base: [0, 0, 0, 0, NaN, 0] }, "RangeError: base[4] must be a finite number, got NaN"],
+        [{ base: [0, 0, "q", 0, 0, 0] }, 'TypeError: base[2] must be a finite number, got "q"'],
         [
             { links: [{ a: 0, b: 2, rest: 1, stiffness: 1 }] },
             "RangeError: links[0].b must be the index of ano...",
@@ -1114,12 +1145,15 @@ await test("errors name field and value, and change nothing", () => {
         [() => one.frame("leapfrog", 1, 1, { most: 3 }), "TypeError: the option most is unknown"],
         [() => one.frame("leapfrog", 1, 1, { move: 3 }), "TypeError: move must be a function or null, got 3"],
         [() => one.setLink(0, { stifness: 3 }), "TypeError: the option stifness is unknown"],
+        [() => bendRod([0, 0, 0, 0, 0, 0], 1), "RangeError: position must be finite, and different from..."],
+        [() => bendGrid({ count: [2, 2, 2], spacing: 1 }, 1), "RangeError: count must be that of a sheet"],
         [() => (one.gravity = [0, 0]), "TypeError: Cannot add property gravity..."],
         [() => one.set("position", [1, NaN]), "RangeError: position[1] must be a finite number, got NaN"],
         [() => one.set("position", [1, 2], 2), "RangeError: first + count must be at most 2, got 3"],
         [() => one.set("speed", [1, 2]), "TypeError: quantity must be one of..."],
         [() => one.set("force", [1, 2]), "TypeError: the scene is defined without heldForces"],
-        [() => one.get("position", -1), "RangeError: first must be an integer >= 0, got -1"],
+        [() => one.get("position", -1), "RangeError: first must be an integer from 0 to 2, got -1"],
+        [() => one.get("position", 9), "RangeError: first must be an integer from 0 to 2, got 9"],
         [() => one.pin(0), "TypeError: the scene is defined without editable"],
         [() => one.tear(1), "TypeError: the scene is defined without editable"],
         [
@@ -1155,14 +1189,18 @@ await test("edits that are refused name field, value and index, and change nothi
         [links("damping", 1, Infinity), `damping of link 1 must be ${finite}, got Infinity`],
         [links("stiffness", 3, 1e308), `stiffness of link 3 must be ${finite}, got 1e+308`],
         [links("damping", 0, 1e308), `damping of link 0 must be ${finite}, got 1e+308`],
-        [links("ends", 2, 3), 'ends of link 1 must be 1 and 2, got "3, 2"'],
-        [() => scene.setLink(2, { b: 4 }), 'ends of link 2 must be 2 and 3, got "2, 4"'],
+        [links("ends", 2, 3), "ends of link 1 must be 1 and 2, got [3,2]"],
+        [() => scene.setLink(2, { b: 4 }), "ends of link 2 must be 2 and 3, got [2,4]"],
         [() => scene.setMass([2, 1e-320], 1), `mass[1] must be ${reciprocal}, got 1e-320`],
         [() => scene.setMass([2, 3, 1e-307, 1], 1), `mass[2] must be ${reciprocal}, got 1e-307`],
     ]) {
         refused(run, `RangeError: ${wanted}`);
         assert.deepEqual(all(), before);
     }
+    const text = { ...scene.getLink(3), stiffness: "3" };
+    const wanted = 'stiffness must be a number, got "3"';
+    refused(() => scene.setLink(3, { stiffness: "3" }), `TypeError: links[3].${wanted}`);
+    refused(() => scene.setLinks([text], 3), `TypeError: links[0].${wanted}`);
     scene.free();
 });
 

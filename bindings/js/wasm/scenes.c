@@ -39,12 +39,15 @@ typedef struct shown {
     uint32_t component; /* of an element of `positions` that receives the first axis */
     size_t particles, links;
     spring_clock clock; /* dropped: by failed frames, and not yet in times[1] of a frame */
+    double alpha;       /* scene.js copies it together with `clock` */
     spring_clock next;  /* after the frame that has begun */
-    double alpha, next_alpha;
+    double next_alpha;
     bool in_frame;        /* whether a frame has begun that takes steps */
     double *before, *now; /* [particles*axes] the last two states of a frame; NULL before the first */
     float *positions;     /* [3*particles] */
 } shown;
+
+_Static_assert(offsetof(shown, alpha) == offsetof(shown, clock) + 8 * 3, "scene.js: #frames");
 
 /* What def_check() found. */
 static struct {
@@ -299,7 +302,8 @@ EXPORT(scene_undo_frame) const float *scene_undo_frame(shown *s, double elapsed)
     return show_between(s);
 }
 
-/* What frames depend on besides the scene: the clock, and the state before the last step, NULL before the first frame. */
+/* What frames depend on besides the scene: the clock and alpha, and the state before the last step, NULL before the first
+   frame. */
 EXPORT(scene_clock) spring_clock *scene_clock(shown *s)
 {
     return &s->clock;
