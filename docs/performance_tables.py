@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 DOCS = pathlib.Path(__file__).resolve().parent
-SCENES = {'rope': 'rope', 'cloth': 'cloth, 25 × 25', 'jelly': 'soft body, 8 × 8 × 8'}
+SCENES = {'rope': 'rope on two axes', 'cloth': 'cloth, 25 × 25', 'jelly': 'soft body (`jelly`), 8 × 8 × 8'}
 PARTICLES = {'rope': 'ropes', 'cloth': 'cloth', 'jelly': 'soft bodies', 'water': 'height-field water'}
 COMMANDS = {  # the longer ones first, so that the processor runs at its full clock frequency when the short ones are measured
     'engines': ['spring-engines'],

@@ -47,10 +47,11 @@ export class Propagator {
         const w = stiffness / mass + 0;
         const g = damping / mass + 0;
         const b = g / 2;
-        const rest =
+        let rest =
             moderate(mass) && moderate(w) && (!g || moderate(g))
                 ? (remainderOf(stiffness, mass, w) - b * remainderOf(damping, mass, g)) * (1 / mass)
                 : restOf(stiffness, mass, w) - b * restOf(damping, mass, g);
+        if (rest - rest !== 0) rest = 0; // it overflows only where b^2 is far larger than w
         this.omega2 = w; // [1/s^2]
         this.b = b; // [1/s]
         // The distance between the roots, sqrt |w - b^2|, scaled by a power of two lest squares overflow or underflow.

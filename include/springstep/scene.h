@@ -704,13 +704,14 @@ SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t
 /**
  * Cuts all links of an editable scene that are longer than a limit.
  *
- * Call it at a fixed interval, such as once per frame, because the result depends on how often the lengths are
- * compared. Links are compared in double precision and visited in the order of their indices. Links that are already
- * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Cutting a link also
- * cuts each weighted link that contains both of its ends. Use spring_links_components() to find the pieces.
+ * Call it always after the same number of steps, because the result depends on how often the lengths are compared.
+ * Links are compared in double precision and visited in the order of their indices. Links that are already cut, and
+ * tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Cutting a link also cuts
+ * each weighted link that contains both of its ends. Use spring_links_components() to find the pieces.
  *
- * Banded links are first compared with SIMD, and one by one only if one of them may be too long. For bands see
- * spring_links_renumber().
+ * Banded links are first compared with SIMD, and one by one only if one of them may be too long: with limits, if any
+ * link, even a cut one, is longer than the least limit allows. So set the limits of cut links and tethers to INFINITY.
+ * For bands see spring_links_renumber().
  *
  * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
  *                      NULL

@@ -134,9 +134,9 @@ SPRING_API void spring_step_euler(spring_state *s, const spring_params *p, doubl
  *     v1 = (v + dt (accel - omega2 x)) / (1 + gamma dt);   x1 = x + dt v1
  *
  * First order. Many game engines use this method. Without damping it is symplectic: the energy error stays bounded, at
- * about dt omega/2 of the energy. Without damping, it is leapfrog with v half a step behind: x and v + dt/2 (accel -
- * omega2 x) are a leapfrog run. Stable for 0 < dt < (gamma + sqrt(gamma^2 + 4 omega2))/omega2. For negative dt the
- * implicit kick has a pole at gamma |dt| = 1.
+ * about dt omega of the energy (dt omega/2 if the spring starts at rest). Without damping, it is leapfrog with v half a
+ * step behind: x and v + dt/2 (accel - omega2 x) are a leapfrog run. Stable for 0 < dt < (gamma + sqrt(gamma^2 + 4
+ * omega2))/omega2. For negative dt the implicit kick has a pole at gamma |dt| = 1.
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
@@ -378,7 +378,8 @@ SPRING_API spring_params spring_params_bounce(double duration, double bounce);
  * @param[in] damping_ratio  > 0; 1 is critical
  * @param[in] tolerance      0 < tolerance < 1, relative to the initial distance; 0.001 looks settled
  * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
- * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c)
+ * @par Accuracy spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c), unless the
+ * tolerance is the amplitude of a turning point to within rounding errors
  */
 SPRING_API spring_params spring_params_settling(double time, double damping_ratio, double tolerance);
 
@@ -410,7 +411,8 @@ SPRING_API double spring_settling_time(const spring_state *s, const spring_param
 
 /**
  * Returns the time after which spring_at_rest() stays true: the exact solution stays within x_tol of its rest position,
- * and its speed stays at most v_tol.
+ * and its speed stays at most v_tol. Without stiffness, the rest position is that of spring_settling_time(), while
+ * spring_at_rest() ignores the position.
  *
  * @param[in] x_tol  >= 0 [m]
  * @param[in] v_tol  >= 0 [m/s]

@@ -7,7 +7,7 @@
  *           coefficients. So the energy error stays bounded over any number of steps. The method is leapfrog with an
  *           offset of half a step: x and v + h/2 (a - w x) are a leapfrog run.
  * Order     1. Without damping the step conserves v^2/2 + w x^2/2 - h w x v/2. The energy error is at most about z/2 of
- *           E, z = h sqrt(w), and the phase error is the same as with leapfrog.
+ *           E from rest, and z from any start, z = h sqrt(w). The phase error is the same as with leapfrog.
  * Limit     trace 1 + (1 - h^2 w)/(1 + q), determinant 1/(1 + q): stable for h^2 w < 4 + 2 h g, that is
  *           h < (g + sqrt(g^2 + 4 w))/w.
  * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/spring/test_iterate.c)

@@ -633,7 +633,7 @@ static void too_light_for_weighted(void)
 /* The weights of a link in a band may underflow in single precision: its state is then one that loads. */
 static void weights_that_underflow(void)
 {
-    enum { particles = 12 };
+    enum { particles = 40 };
     static const double sizes[] = {1, 1e-50, 1.5e-45, 3e-45, 1e-300};
     double x[3 * particles] = {0};
     spring_weighted_link link[particles - 2];
