@@ -61,13 +61,14 @@ static const cli_program program = {
                "time is printed on standard error, and the exit status is 1. A warning is printed if the step is not\n"
                "below the stable step, or if the duration is not a whole number of steps.",
     .columns = "method step t_s x_m v_m_per_s energy_J exact_x_m error_m",
-    .meaning = "energy_J is m v^2/2 + k x^2/2 - load x. error_m is |x_m - exact_x_m|. The last row is the final\n"
-               "state. exact_x_m has a rounding error of up to about 4 eps (1 + omega t) times the amplitude, with eps =\n"
-               "2.2e-16 and omega = sqrt(k/m). With --method exact, one evaluation covers the steps from one row to\n"
-               "the next, at most 2^24 steps (with --envelope, one step), and error_m compares two evaluations of\n"
-               "the same formula. It does not contain the rounding error of exact_x_m, and may be 0.\n\n"
-               "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m. The\n"
-               "errors have the sign of x_m - exact_x_m. Parts without a step have no row.",
+    .meaning =
+        "energy_J is m v^2/2 + k x^2/2 - load x. error_m is |x_m - exact_x_m|. The last row is the final\n"
+        "state. exact_x_m has a rounding error of up to about 4 eps (1 + omega t) times the amplitude, with\n"
+        "eps = 2.2e-16 and omega = sqrt(k/m). With --method exact, one evaluation covers the steps from one row to\n"
+        "the next, at most 2^24 steps (with --envelope, one step), and error_m compares two evaluations of\n"
+        "the same formula. It does not contain the rounding error of exact_x_m, and may be 0.\n\n"
+        "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m. The\n"
+        "errors have the sign of x_m - exact_x_m. Parts without a step have no row.",
     .shown = {"t_s", "x_m"},
     .examples = {"--method leapfrog --duration 10 --dt 0.01 --every 1 -o spring.tsv",
                  "--method exact --duration 2 --steps 120 --every 1 --stiffness 40 --damping 3",

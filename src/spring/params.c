@@ -20,7 +20,9 @@ static spring_params params_of(double omega, double damping_ratio)
     const spring_params p = {.mass = 1, .stiffness = omega * omega, .damping = 2 * damping_ratio * omega};
     const bool underflows = omega > 0 && p.stiffness < DBL_MIN;
     const double undefined = (double)NAN;
-    return spring_params_valid(&p) && damping_ratio >= 0 && !underflows ? p : (spring_params){undefined, undefined, undefined, undefined};
+    return spring_params_valid(&p) && damping_ratio >= 0 && !underflows
+               ? p
+               : (spring_params){undefined, undefined, undefined, undefined};
 }
 
 spring_params spring_params_hertz(double hertz, double damping_ratio)

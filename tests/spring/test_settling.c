@@ -290,21 +290,15 @@ static void params_from_half_life(void)
 static void constructors_refuse(void)
 {
     const spring_params bad[] = {
-        spring_params_hertz(-1, 0.5),
-        spring_params_hertz(NAN, 0.5),
-        spring_params_hertz(INFINITY, 0.5),
-        spring_params_hertz(1e160, 0.5),
-        spring_params_hertz(1e-170, 0.5),
-        spring_params_hertz(1, -0.5),
-        spring_params_hertz(1, NAN),
-        spring_params_half_life(1e170, 0.5),
-        spring_params_half_life(INFINITY, 0.5),
-        spring_params_half_life(0, 0.5),
-        spring_params_half_life(-1, 0.5),
-        spring_params_half_life(NAN, 0.5),
-        spring_params_half_life(1, 0),
-        spring_params_half_life(1, -0.5),
-        spring_params_half_life(1, NAN),
+        spring_params_hertz(-1, 0.5),         spring_params_hertz(NAN, 0.5),
+        spring_params_hertz(INFINITY, 0.5),   spring_params_hertz(1e160, 0.5),
+        spring_params_hertz(1e-170, 0.5),     spring_params_hertz(1, -0.5),
+        spring_params_hertz(0, -0.5), /* the damping would be -0 */
+        spring_params_hertz(1e-150, -1e-200), spring_params_hertz(1, NAN),
+        spring_params_half_life(1e170, 0.5),  spring_params_half_life(INFINITY, 0.5),
+        spring_params_half_life(0, 0.5),      spring_params_half_life(-1, 0.5),
+        spring_params_half_life(NAN, 0.5),    spring_params_half_life(1, 0),
+        spring_params_half_life(1, -0.5),     spring_params_half_life(1, NAN),
         spring_params_half_life(1, INFINITY),
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

@@ -58,8 +58,10 @@ static double error_bound(spring_method m, double duration, uint64_t n)
 
 static _Noreturn void fail_for_rounding(spring_method m, double error)
 {
-    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m, because the bound of its rounding error, 8 eps n, is of that size",
-             spring_method_name(m), error);
+    cli_fail(
+        CLI_FAILED,
+        "%s cannot be shown to stay within %.17g m, because the bound of its rounding error, 8 eps n, is of that size",
+        spring_method_name(m), error);
 }
 
 /* For steps above 1 s, which may not be rotations, each n is evaluated from the n-th power of the step. */
