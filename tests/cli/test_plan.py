@@ -65,8 +65,16 @@ def test_a_frequency_is_a_stiffness():
 def test_rounding_is_in_the_way():
     rows = plan('--error 1e-15 --duration 100 --hertz 1')
     is_a_plan(rows, SPRINGS, 100)
-    assert rows[0]['method'] == 'exact'
-    assert all(row['steps'] == '0' for row in rows[1:])
+    assert all(row['steps'] == '0' for row in rows)
+
+
+@pytest.mark.parametrize('options, exact', [
+    ('--error 1e-9 --duration 1e9 --hertz 2', False), ('--error 1e-4 --duration 1e9 --hertz 2', True),
+    ('--error 1e-9 --duration 1e9 --hertz 2 --damping-ratio 0.01', True), ('--error 1e-17 --duration 1 --hertz 2', False)])
+def test_rounding_of_the_exact_solution(options, exact):
+    """The bound of spring_step_exact(), until the motion has decayed."""
+    rows = {row['method']: row for row in plan(options)}
+    assert (int(rows['exact']['steps']) == 1) == exact
 
 
 def test_in_words():

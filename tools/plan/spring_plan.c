@@ -289,10 +289,19 @@ static double time_of(const spring_params *p, spring_method m, double dt, uint64
     return best * 1e-9;
 }
 
+/* The largest rounding error of the exact solution in this duration, in the units of --error: the bound of
+   spring_step_exact() until the motion has decayed. */
+static double exact_rounding(const spring_params *p)
+{
+    const double omega = sqrt(p->stiffness / p->mass), b = p->damping / p->mass / 2;
+    const double decay = b > omega ? omega / (b + sqrt((b - omega) * (b + omega))) * omega : b;
+    return 4 * DBL_EPSILON * (1 + fmax(omega, b) * (decay > 0 ? fmin(duration, 1 / decay) : duration));
+}
+
 static plan_row plan_spring(const spring_params *p, spring_method m)
 {
     const double dt = spring_accurate_step(p, m, duration, error);
-    if (dt == 0)
+    if (dt == 0 || (m == SPRING_EXACT && !(exact_rounding(p) <= error)))
         return (plan_row){.method = m, .predicted = NAN, .measured = NAN, .uncertainty = NAN, .time = INFINITY};
     const double steps = rint(duration / dt), timed = fmin(steps, most_steps / 30);
     return (plan_row){
