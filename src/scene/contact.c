@@ -882,40 +882,37 @@ static bool passes_face(const contact_body *b, const meeting *m, double radius, 
     return false;
 }
 
-/* Whether another body is at the start of the chord, beyond the face of a box with this normal. skins: how deep it is there at
-   least */
-static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double skins)
+/* Whether the gap to another body is from `least` to `most`, at the distance `out` from the start of the chord along a normal
+   of a box. facing: the largest cosine between the normals */
+static bool is_beyond(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double out,
+                      double least, double most, double facing)
 {
-    const vector3 x = place_out(&m->b->start, add_scaled(m->start, 4 * m->b->skin, normal));
+    const vector3 x = place_out(&m->b->start, add_scaled(m->start, out, normal));
+    const vector3 n = direction_out(&m->b->start, normal);
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
         near_point at;
         if (i == m->index || (b->bits & p->bits) == 0 || is_custom(b->shape))
             continue;
         find_nearest(p, b, 0, place_in(&b->start, x), &at);
-        if (at.gap < -skins * b->skin)
+        if (at.gap >= least && at.gap < most && inner(direction_out(&b->start, at.normal), n) <= facing)
             return true;
     }
     return false;
 }
 
-/* Whether another body adjoins the face of a box with this normal, as the floor under a wall: nothing fits between. gap: of
-   the start of the chord to that face */
-static bool adjoins(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double gap)
+/* Whether another body is beyond the face of a box. skins: how deep the start of the chord is there at least */
+static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double skins)
 {
-    const double out = -gap - p->radius; /* [m] to the face */
-    const vector3 x = place_out(&m->b->start, add_scaled(m->start, out, normal));
-    for (unsigned i = 0; i < s->count; i++) {
-        const contact_body *const b = &s->body[i];
-        near_point at;
-        if (i == m->index || (b->bits & p->bits) == 0 || is_custom(b->shape))
-            continue;
-        find_nearest(p, b, 0, place_in(&b->start, x), &at);
-        if (fabs(at.gap + p->radius) <= flush_of(p, b) + b->skin + m->b->skin &&
-            inner(direction_out(&b->start, at.normal), direction_out(&m->b->start, normal)) < -same_plane)
-            return true;
-    }
-    return false;
+    return is_beyond(s, p, m, normal, 4 * m->b->skin, -(double)INFINITY, -skins * m->b->skin, 1.1);
+}
+
+/* Whether another body adjoins the nearest face of a box, as the floor under a wall: nothing fits between. */
+static bool adjoins(const contact_setting *s, contact_particle *p, const meeting *m)
+{
+    const double flush = flush_of(p, m->b) + 2 * m->b->skin;
+    return is_beyond(s, p, m, m->at.normal, -m->at.gap - p->radius, -p->radius - flush, -p->radius + flush,
+                     -same_plane);
 }
 
 /* Inside a box, chooses another face than the nearest one. At an edge: the face into which the path goes fastest, of those
@@ -924,15 +921,16 @@ static bool adjoins(const contact_setting *s, contact_particle *p, const meeting
 static void choose_face(const contact_setting *s, contact_particle *p, meeting *m, double radius)
 {
     const contact_body *const b = m->b;
-    const double nearest = m->at.gap, thinnest = fmin(fmin(b->half[0], b->half[1]), b->flat ? b->half[1] : b->half[2]);
-    const bool passed = adjoins(s, p, m, m->at.normal, nearest);
-    double most = 0, next = -(double)INFINITY;
+    const double nearest = m->at.gap;
+    const bool passed = adjoins(s, p, m);
+    double most = 0, next = -(double)INFINITY, thinnest = (double)INFINITY;
     vector3 next_normal = zero3;
     for (int a = 0; a < (b->flat ? 2 : 3); a++) {
         const double side = component(m->start, a) < 0 ? -1 : 1;
         const vector3 normal = {a == 0 ? side : 0, a == 1 ? side : 0, a == 2 ? side : 0};
         const double rate = inner(normal, m->way), gap = inner(normal, m->start) - b->half[a] - radius;
-        if (gap > next && gap > -thinnest - radius && !(inner(normal, m->at.normal) > 0)) {
+        thinnest = fmin(thinnest, b->half[a]);
+        if (gap > next && !(inner(normal, m->at.normal) > 0)) {
             next = gap;
             next_normal = normal;
         }
@@ -942,7 +940,7 @@ static void choose_face(const contact_setting *s, contact_particle *p, meeting *
         m->at.gap = gap;
         m->at.normal = normal;
     }
-    if (most == 0 && passed && !is_zero(next_normal) && !is_covered(s, p, m, next_normal, 2)) {
+    if (most == 0 && passed && next > -thinnest - radius && !is_covered(s, p, m, next_normal, 2)) {
         m->at.gap = next;
         m->at.normal = next_normal;
     }
