@@ -378,8 +378,8 @@ SPRING_API spring_params spring_params_bounce(double duration, double bounce);
  * @param[in] damping_ratio  > 0; 1 is critical
  * @param[in] tolerance      0 < tolerance < 1, relative to the initial distance; 0.001 looks settled
  * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
- * @par Accuracy spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c), unless the
- * tolerance is the amplitude of a turning point to within rounding errors
+ * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c), unless the
+ *                tolerance is the amplitude of a turning point to within rounding errors
  */
 SPRING_API spring_params spring_params_settling(double time, double damping_ratio, double tolerance);
 

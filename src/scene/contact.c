@@ -901,7 +901,7 @@ static bool is_beyond(const contact_setting *s, contact_particle *p, const meeti
     return false;
 }
 
-/* Whether another body is beyond the face of a box. skins: how deep the start of the chord is there at least */
+/* Whether another body is beyond the face of a box with this normal. skins: its least depth there, in units of the skin */
 static bool is_covered(const contact_setting *s, contact_particle *p, const meeting *m, vector3 normal, double skins)
 {
     return is_beyond(s, p, m, normal, 4 * m->b->skin, -(double)INFINITY, -skins * m->b->skin, 1.1);
@@ -917,12 +917,12 @@ static bool adjoins(const contact_setting *s, contact_particle *p, const meeting
 
 /* Inside a box, chooses another face than the nearest one. At an edge: the face into which the path goes fastest, of those
    that no other body covers. If a body adjoins the nearest face: the next nearest one, unless a body covers it, or it is
-   farther than the box is thin. radius: [m] of the box and the particle */
+   farther than the smallest half size of the box. radius: [m] of the box and the particle */
 static void choose_face(const contact_setting *s, contact_particle *p, meeting *m, double radius)
 {
     const contact_body *const b = m->b;
     const double nearest = m->at.gap;
-    const bool passed = adjoins(s, p, m);
+    const bool adjoined = adjoins(s, p, m);
     double most = 0, next = -(double)INFINITY, thinnest = (double)INFINITY;
     vector3 next_normal = zero3;
     for (int a = 0; a < (b->flat ? 2 : 3); a++) {
@@ -940,7 +940,7 @@ static void choose_face(const contact_setting *s, contact_particle *p, meeting *
         m->at.gap = gap;
         m->at.normal = normal;
     }
-    if (most == 0 && passed && next > -thinnest - radius && !is_covered(s, p, m, next_normal, 2)) {
+    if (most == 0 && adjoined && next > -thinnest - radius && !is_covered(s, p, m, next_normal, 2)) {
         m->at.gap = next;
         m->at.normal = next_normal;
     }

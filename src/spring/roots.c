@@ -43,8 +43,8 @@ spring_quotients spring_quotients_of(double k, double c, double m)
     const double rest = moderate(m) && moderate(w) && (moderate(g) || g == 0)
                             ? (remainder_of(k, m, w) - b * remainder_of(c, m, g)) * (1 / m)
                             : rest_of(k, m, w) - b * rest_of(c, m, g);
-    return (spring_quotients){w, b,
-                              spring_finite(rest) ? rest : 0}; /* it overflows only where b^2 is far larger than w */
+    /* The rest overflows only where b^2 is far larger than w. */
+    return (spring_quotients){w, b, spring_finite(rest) ? rest : 0};
 }
 
 spring_roots spring_roots_of(const spring_params *p)
