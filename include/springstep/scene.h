@@ -789,8 +789,8 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
  *
  * The scene need not be editable. Link damping sees this velocity. The particle keeps moving at this velocity until the
  * velocity is changed. The velocity is rounded once, and the position in each step, so after n steps the particle may
- * miss the target by about n/2 + 2 ulp of the largest coordinate on its way; n + 2 ulp with heavily damped links, and
- * 4 n + 2 ulp with SRKN6.
+ * miss the target by about n/2 + 5 ulp of the largest coordinate on its way; n + 5 ulp with heavily damped links, and
+ * 6 n + 5 ulp with SRKN6.
  *
  * @param[in] target    [axes] [m] position to reach; NULL: the particle stops
  * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(). If the target is

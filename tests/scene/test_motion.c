@@ -351,10 +351,50 @@ static void rotation(void)
     }
 }
 
+/* A driven particle reaches its target: misses by at most what spring_scene_drive() states, with every method. */
+static void driven(void)
+{
+    static model m;
+    static state y;
+    double worst = 0; /* as a fraction of the bound */
+    for (uint32_t round = 0; round < 2000; round++) {
+        const uint32_t axes = 1 + round % 3;
+        build(&m, (uint32_t[]){3, 2, 1}, axes, (unsigned)(random_bits() % feature_masks) | PINNED);
+        const size_t i = random_bits() % m.def.particles;
+        m.pinned[i] = 1;
+        const bool heavy = random_bits() % 2;
+        for (size_t l = 0; heavy && l < m.def.links; l++)
+            m.link[l].damping = random_log(10, 1000);
+        const method_list all = use_all_methods(&m.def);
+        for (const spring_method *method = all.at; *method != no_method; method++) {
+            spring_scene *s = scene_of(&m.def);
+            double target[3], start[3];
+            const size_t n = 1 + random_bits() % 200;
+            const double longest = heavy && *method != SPRING_LEAPFROG ? 1e-4 : 1e-2; /* stable */
+            const double dt = (double)(float)random_log(1e-6, longest); /* n dt is exact */
+            spring_scene_get(s, SPRING_POSITION, start, 0, i, 1);
+            for (uint32_t a = 0; a < axes; a++)
+                target[a] = (double)(scalar)(random_log(1e-3, 1e3) * (random_bits() % 2 ? -1 : 1));
+            const bool reached = spring_scene_drive(s, i, target, (double)n * dt) == SPRING_OK &&
+                                 spring_scene_advance(s, *method, dt, n) == SPRING_OK;
+            CHECK(reached, "it moves");
+            spring_scene_get(s, SPRING_POSITION, y.x, 0, i, 1);
+            for (uint32_t a = 0; a < axes && reached; a++) {
+                const double each = *method == SPRING_SRKN6 ? 6 : heavy && *method == SPRING_LEAPFROG ? 1 : 0.5;
+                const double ulp = EPS * exp2(floor(log2(fmax(fabs(start[a]), fabs(target[a])))));
+                worst = fmax(worst, fabs(y.x[a] - target[a]) / (ulp * (each * (double)n + 5)));
+            }
+            free(s);
+        }
+    }
+    CHECK_BELOW(worst, 1, "the bound of spring_scene_drive()");
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"steady rotation", rotation},
+        {"driven particles", driven},
         {"against the definitions", against_definitions},
         {"momentum", momentum},
         {"leapfrog is reversible", reversible},
