@@ -371,7 +371,7 @@ static void driven(void)
             double target[3], start[3];
             const size_t n = 1 + random_bits() % 200;
             const double longest = heavy && *method != SPRING_LEAPFROG ? 1e-4 : 1e-2; /* stable */
-            const double dt = (double)(float)random_log(1e-6, longest); /* n dt is exact */
+            const double dt = (double)(float)random_log(1e-6, longest);               /* n dt is exact */
             spring_scene_get(s, SPRING_POSITION, start, 0, i, 1);
             for (uint32_t a = 0; a < axes; a++)
                 target[a] = (double)(scalar)(random_log(1e-3, 1e3) * (random_bits() % 2 ? -1 : 1));
