@@ -1997,6 +1997,60 @@ static void room_of_boxes(void)
     CHECK_BELOW(fastest, 64 * EPS, "it lies on the floor");
 }
 
+/* Planes shut in particles, however they turn: a box that is shaken, with a spin that changes every 1/12 s. */
+static void room_of_planes(void)
+{
+    enum { COUNT = 20 };
+    double worst = -1;
+    for (int k = 0; k < 40; k++) {
+        const double half[3] = {random_uniform(0.3, 1.5), random_uniform(0.3, 1.5), random_uniform(0.3, 1.5)};
+        const double e = k % 2 ? random_uniform(0, 0.5) : 0, friction = random_uniform(0, 1), dt = 1. / 240;
+        double axis[3][3], spin[3], x[COUNT][3];
+        spring_collider c[6];
+        spring_scene_def def = {.particles = COUNT,
+                                .position = x[0],
+                                .mass_all = 0.1,
+                                .gravity = {0, -gravity, 0},
+                                .colliders = 6,
+                                .particle_radius = k % 4 < 2 ? (scalar)0.02 : 0,
+                                .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
+        for (int i = 0; i < COUNT; i++)
+            for (int a = 0; a < 3; a++)
+                x[i][a] = random_uniform(-0.9, 0.9) * half[a];
+        memcpy(axis, unit_box.axis, sizeof axis);
+        spring_scene *s = scene_of(&def);
+        for (int n = 0; n < 400; n++) {
+            const double fastest = 1 + k % 5;
+            double phi[3];
+            for (int a = 0; a < 3; a++) {
+                spin[a] = n % 20 ? spin[a] : random_uniform(-fastest, fastest);
+                phi[a] = spin[a] * dt;
+            }
+            for (int i = 0; i < 6; i++) {
+                c[i] = (spring_collider){.shape = SPRING_PLANE, .friction = friction, .restitution = e};
+                memcpy(c[i].spin, spin, sizeof spin);
+                for (int a = 0; a < 3; a++) {
+                    c[i].axis[0][a] = (i < 3 ? 1 : -1) * axis[i % 3][a];
+                    c[i].at[a] = -half[i % 3] * c[i].axis[0][a];
+                }
+                cross(spin, c[i].at, c[i].velocity);
+                cross(spin, c[i].velocity, c[i].acceleration);
+            }
+            set(s, c, 6);
+            run(s, with_contacts[k % 3 == 0], dt, 1);
+            for (int a = 0; a < 3; a++)
+                turn(phi, (double[]){axis[a][0], axis[a][1], axis[a][2]}, axis[a]);
+            spring_scene_get(s, SPRING_POSITION, x[0], 0, 0, COUNT);
+            for (int i = 0; i < COUNT; i++)
+                for (int a = 0; a < 3; a++)
+                    worst = fmax(worst, fabs(dot(x[i], axis[a])) + def.particle_radius - half[a]);
+        }
+        free(s);
+    }
+    /* The points `at` follow a parabola: (|spin| dt)^3/6 of 2.6 m, at spins of at most 5 sqrt(3) rad/s. */
+    CHECK(worst <= 2.1e-5, "inside");
+}
+
 /* A small particle slides over a floor to a wall that stands at the level of the floor and touches only its edge. */
 static void wall_on_a_floor(void)
 {
@@ -2679,6 +2733,7 @@ static const test tests[] = {
     {"floor of boxes", floor_of_boxes},
     {"floor at a wall", floor_at_a_wall},
     {"room of boxes", room_of_boxes},
+    {"room of planes", room_of_planes},
     {"wall on a floor", wall_on_a_floor},
     {"corner of planes", corner_of_planes},
     {"start on a seam", start_on_a_seam},
