@@ -1131,8 +1131,9 @@ SPRING_API size_t spring_links_components(size_t particles, size_t links, const 
  * @param         work      [2*particles] work space, used only during the call
  * @param         distance  [2*particles] [m] work space; afterwards, the first half contains the sum of rest lengths for
  *                          each particle: 0 for pinned particles, INFINITY for particles that do not hang on one
- * @return SPRING_OK; SPRING_EINVAL: NULL, or an invalid fraction or slack; SPRING_EUNSUPPORTED: one axis; SPRING_ENOMEM:
- *         out is too small, and only *count and the work space are written; otherwise as spring_scene_check()
+ * @return SPRING_OK; SPRING_EINVAL: NULL, an invalid fraction or slack, or a tether that spring_scene_check() would
+ *         reject; SPRING_EUNSUPPORTED: one axis; SPRING_ENOMEM: out is too small, and only *count and the work space are
+ *         written; otherwise as spring_scene_check()
  */
 SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, double fraction, double slack,
                                               spring_link *out, size_t *count, uint32_t *work, double *distance);
@@ -1165,8 +1166,9 @@ SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, doubl
  *                             of links
  * @param         work         [3*vertices + 6*triangles + 1] work space, used only during the call
  * @return SPRING_OK; SPRING_EINVAL: NULL, a position or `weld` that is not finite, or a triangle without area, before
- *         or after welding; SPRING_ERANGE: an index of a vertex or a count is too large; SPRING_ENOMEM: out is too
- *         small. After an error nothing is written except the work space and, with SPRING_ENOMEM, *links
+ *         or after welding, or with sides below about 1e-75 m or above 1e75 m; SPRING_ERANGE: an index of a vertex or a
+ *         count is too large; SPRING_ENOMEM: out is too small. After an error nothing is written except the work space
+ *         and, with SPRING_ENOMEM, *links
  */
 SPRING_API spring_status spring_links_from_mesh(size_t vertices, const double *position, size_t triangles,
                                                 const uint32_t *triangle, double weld, uint32_t *particle_of,
@@ -1268,8 +1270,8 @@ SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *p
  *                              *count is written
  * @param[in,out] count         at most 3*triangles/2 links
  * @param         work          [particles + 6*triangles + 1] work space, used only during the call
- * @return SPRING_EINVAL also for a triangle without area, and for an edge of more than two triangles, or of two
- *         triangles with the same corners
+ * @return SPRING_EINVAL also for a triangle without area, or with sides below about 1e-75 m or above 1e75 m, and for an
+ *         edge of more than two triangles, or of two triangles with the same corners
  * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
  *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
  *                squares with parallel diagonals, and about 4 times for irregular meshes. Long rectangles are stiffer

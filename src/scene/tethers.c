@@ -81,6 +81,15 @@ static bool hangs(const spring_scene_def *def, const hanging *h, size_t i)
     return !is_pinned(def, i) && h->pin[i] != no_pin && h->joined[i] == 0;
 }
 
+static spring_link tether_of(const hanging *h, uint32_t i, double fraction, double slack)
+{
+    return (spring_link){.a = i,
+                         .b = h->pin[i],
+                         .rest = h->distance[i] * (1 + slack),
+                         .stiffness = fraction * h->row[i],
+                         .flags = SPRING_LINK_TETHER};
+}
+
 spring_status spring_definition_tethers(const spring_scene_def *def, size_t precision, double fraction, double slack,
                                         spring_link *out, size_t *count, uint32_t *work, double *distance)
 {
@@ -95,19 +104,22 @@ spring_status spring_definition_tethers(const spring_scene_def *def, size_t prec
     const hanging h = {distance, distance + def->particles, work, work + def->particles};
     find_distances(def, &h);
     find_rows(def, &h);
+    size_t found = 0;
+    for (uint32_t i = 0; i < def->particles; i++)
+        if (hangs(def, &h, i)) {
+            const spring_link link = tether_of(&h, i, fraction, slack);
+            if (spring_link_invalid_field(&link, precision) != NULL ||
+                spring_link_overflows(&link, precision, inverse_mass_of(def, precision, i), 0) != NULL)
+                return SPRING_EINVAL;
+            found++;
+        }
     const size_t room = *count;
-    *count = 0;
-    for (size_t i = 0; i < def->particles; i++)
-        *count += hangs(def, &h, i);
-    if (out == NULL || room < *count)
+    *count = found;
+    if (out == NULL || room < found)
         return out == NULL ? SPRING_OK : SPRING_ENOMEM;
     for (uint32_t i = 0; i < def->particles; i++)
         if (hangs(def, &h, i))
-            *out++ = (spring_link){.a = i,
-                                   .b = h.pin[i],
-                                   .rest = h.distance[i] * (1 + slack),
-                                   .stiffness = fraction * h.row[i],
-                                   .flags = SPRING_LINK_TETHER};
+            *out++ = tether_of(&h, i, fraction, slack);
     return SPRING_OK;
 }
 

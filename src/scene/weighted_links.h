@@ -36,11 +36,22 @@ static inline bool weights_of_band(const scalar w[4])
     return w[1] != 0 && w[1] == w[2] && w[0] == -2 * w[1] && w[3] == 0;
 }
 
+/* In single precision the first weight is minus the sum of the others, which add_pull() uses in its place, so that the
+   sum of the weights is 0. */
+static inline double first_weight(const stored_weighted *l)
+{
+    double others = 0;
+    for (int i = 1; i < l->points; i++)
+        others += (double)l->weight[i];
+    return l->points > 0 && sizeof(scalar) < sizeof(double) ? -others : (double)l->weight[0];
+}
+
 /* Stores the coefficients of a link, also in its slot of a band if it fits there. Weights may underflow. */
 static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, const spring_weighted_link *link)
 {
     for (int i = 0; i < to->points; i++)
         to->weight[i] = (scalar)link->weight[to->place[i]];
+    to->weight[0] = (scalar)first_weight(to);
     to->rest = (scalar)fabs(link->rest);
     to->stiffness = (scalar)link->stiffness;
     to->damping = (scalar)link->damping;
@@ -49,20 +60,15 @@ static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, co
         scene_fill_slot(s, to, scene_slot_place(s, to->slot).index);
 }
 
-/* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the
-   others, which add_weighted_link() uses in its place, so that the sum of the weights is 0. */
+/* The link with its values in the precision of the scene. */
 static inline spring_weighted_link scene_weighted(const stored_weighted *l)
 {
     spring_weighted_link link = {
         .rest = (double)l->rest, .stiffness = (double)l->stiffness, .damping = (double)l->damping};
-    double others = 0;
     for (int i = 0; i < l->points; i++) {
         link.particle[l->place[i]] = l->particle[i];
-        link.weight[l->place[i]] = (double)l->weight[i];
-        others += i > 0 ? (double)l->weight[i] : 0;
+        link.weight[l->place[i]] = i > 0 ? (double)l->weight[i] : first_weight(l);
     }
-    if (l->points > 0 && sizeof(scalar) < sizeof(double))
-        link.weight[l->place[0]] = -others;
     return link;
 }
 

@@ -691,9 +691,34 @@ static void changes_of_nothing(void)
     free(s);
 }
 
+/* Weighted links that are set to the values that they have do not change the scene. */
+static void equal_weighted_links(void)
+{
+    static model m;
+    for (int round = 0; round < 100; round++) {
+        build(&m, sheet, 3, EDITABLE);
+        add_further_links(&m, true);
+        spring_scene *s = scene_of(&m.def);
+        size_t bytes;
+        spring_scene_bytes(&m.def, &bytes);
+        void *const before = malloc(bytes);
+        memcpy(before, s, bytes);
+        for (size_t i = 0; i < m.def.weighted_links; i++) {
+            spring_weighted_link now;
+            CHECK(spring_scene_get_weighted_link(s, i, &now) == SPRING_OK &&
+                      spring_scene_set_weighted_links(s, i, 1, &now) == SPRING_OK,
+                  "its own value");
+        }
+        CHECK(memcmp(before, s, bytes) == 0, "the same scene");
+        free(before);
+        free(s);
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
+        {"equal weighted links", equal_weighted_links},
         {"callbacks are called as often as said", callback_counts},
         {"calls that cost no evaluation", evaluations},
         {"forces that use velocities are refused", velocities_refused},

@@ -170,6 +170,12 @@ static void invalid_input(void)
               spring_links_tethers(def, 0.1, 0, w.tether, &count, NULL, w.distance) == SPRING_EINVAL &&
               spring_links_tethers(def, 0.1, 0, w.tether, &count, w.work, NULL) == SPRING_EINVAL,
           "NULL");
+    const double much = sizeof(scalar) == sizeof(double) ? 1e308 : 1e38, huge[][2] = {{much, 0}, {0.1, much}};
+    for (size_t i = 0; i < w.m.def.links; i++)
+        w.m.link[i].rest = w.m.link[i].stiffness = 100;
+    for (int i = 0; i < 2; i++)
+        CHECK(spring_links_tethers(def, huge[i][0], huge[i][1], w.tether, &count, w.work, w.distance) == SPRING_EINVAL,
+              "a stiffness and a rest length that a scene would refuse");
     def->mass_all = -1;
     def->mass = NULL;
     CHECK(spring_links_tethers(def, 0.1, 0, w.tether, &count, w.work, w.distance) == SPRING_EINVAL, "a bad definition");
