@@ -558,9 +558,10 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * acceleration, spin and spin acceleration until they are set again. After an error, the colliders of the last call
  * keep moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that
  * is inside a collider is moved to its surface in the next step, and out of all of them if it is inside several, unless
- * these face or enclose it, as at the seam of two boxes. The move adds no velocity, but a velocity into the body is then
- * treated as an impact. Pinned particles pass through colliders. If a box has another collider near it, particles rest
- * above all colliders by 32 rounding errors, so that they do not fall between boxes that touch (docs/details.md).
+ * these face or enclose it, as at the seam of two boxes. Out of a custom body whose gaps are less than distances, it is
+ * moved in several steps. The move adds no velocity, but a velocity into the body is then treated as an impact. Pinned
+ * particles pass through colliders. If a box has another collider near it, particles rest above all colliders by 32
+ * rounding errors, so that they do not fall between boxes that touch (docs/details.md).
  *
  * To set colliders once per frame of length T, give the present pose, the present velocity V of the body, and the
  * acceleration that leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and

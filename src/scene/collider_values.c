@@ -125,7 +125,7 @@ void spring_collider_move(spring_collider *c, double t, uint32_t axes)
 {
     const bool capsule = c->shape == SPRING_CAPSULE;
     contact_body b;
-    spring_contact_place(&b, c, 0, t, t, axes);
+    spring_contact_place(&b, c, 0, DBL_EPSILON, t, t, axes);
     for (uint32_t a = 0; a < axes; a++) {
         const double change = t * c->acceleration[a];
         c->at[a] += t * (c->velocity[a] + change / 2);

@@ -46,7 +46,7 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     copy3(to->segment, b->start.segment);
     const double square = dot_of_vectors(b->start.segment, b->start.segment);
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
-    to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
+    to->reach = (scalar)((b->shape == SPRING_PLANE ? b->radius : b->reach) + rounding);
     to->growth = (scalar)b->growth;
     /* `rounding` once more for the clearance, since positions of colliders are rounded in each step. */
     const double margin = rounded_up * b->growth * (double)largest_radius + 2 * rounding;
@@ -69,7 +69,7 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
     bounds->count = s->colliders;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
-            spring_contact_place(&body[i], &c[i], skin, t0, t1, s->layout.axes);
+            spring_contact_place(&body[i], &c[i], skin, (double)SCALAR_EPSILON, t0, t1, s->layout.axes);
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
     }

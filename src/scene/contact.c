@@ -13,7 +13,7 @@
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
  * Skin      In scenes with a box and another collider near it, all bodies are larger by 32 rounding errors, so that a
  *           particle without radius on one of them is not beyond the edge of another. The skin is the same for all, so
- *           that the tops of boxes side by side stay one face.
+ *           that the tops of boxes side by side stay one face. A path that starts in a skin is moved out of it.
  * Drift     For each contact, in the order of the times of impact:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity. If it is
  *              inside several colliders, it is moved out of the first, and then out of each that it is still inside.
@@ -86,8 +86,9 @@ static const double skin_rounding = 0.25;
 /* The cosine between normals of a custom body on the same face. */
 static const double same_face = 0.9;
 
-/* Contacts of a custom body whose gaps differ by this number of slops are at the same place. */
-static const double same_place = 1e3;
+/* Contacts of a custom body whose gaps differ by this number of slops are at the same place: rounding errors of its
+   function, which computes in double, and of the position of the particle. */
+static const double same_place = 1e3, same_position = 4;
 
 /* The cosine between normals of faces that are one face. */
 static const double same_plane = 1 - 1e-9;
@@ -364,7 +365,8 @@ static double extent_of(const spring_collider *c, bool flat)
 static double size_of(const spring_collider *c, bool flat)
 {
     const vector3 at = vector_of(c->at, flat), n = vector_of(c->axis[0], flat);
-    return c->shape == SPRING_PLANE ? fabs(inner(n, at)) * size_sum(n) : size_sum(at) + extent_of(c, flat);
+    const double extent = is_custom(c->shape) ? c->radius : extent_of(c, flat);
+    return c->shape == SPRING_PLANE ? fabs(inner(n, at)) * size_sum(n) : size_sum(at) + extent;
 }
 
 /* Whether a collider may touch a box, or come close to it before colliders are set again. */
@@ -372,7 +374,7 @@ static bool is_near(const spring_collider *box, const spring_collider *c, bool f
 {
     const double reach = 2 * (extent_of(box, flat) + extent_of(c, flat));
     const vector3 arm = subtract(vector_of(box->at, flat), vector_of(c->at, flat));
-    const double distance = c->shape == SPRING_PLANE ? inner(vector_of(c->axis[0], flat), arm) : size_sum(arm);
+    const double distance = c->shape == SPRING_PLANE ? fabs(inner(vector_of(c->axis[0], flat), arm)) : size_sum(arm);
     return distance <= reach || (is_custom(c->shape) && c->bound == 0);
 }
 
@@ -398,16 +400,18 @@ double spring_contact_motion(const contact_body *b)
     return b->shape == SPRING_CAPSULE ? motion + length3(subtract(start->along, end->along)) : motion;
 }
 
-/* [m] The size of numbers that its distances are computed from. */
-static double rounding_scale_at(const contact_body *b, const body_pose *pose)
+/* [m] The size of numbers that its distances are computed from. The function of a custom body computes in double. */
+static double rounding_scale_at(const contact_body *b, const body_pose *pose, double epsilon)
 {
-    double size = size_sum(pose->at) + b->radius + size_sum(pose->segment) + (is_custom(b->shape) ? b->thickness : 0);
+    double size = size_sum(pose->at) + b->radius + size_sum(pose->segment) +
+                  (is_custom(b->shape) ? b->thickness * (DBL_EPSILON / epsilon) : 0);
     for (int a = 0; a < (b->flat ? 2 : 3) && b->shape == SPRING_BOX; a++)
         size += b->half[a];
     return size;
 }
 
-void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double t0, double t1, uint32_t axes)
+void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double epsilon, double t0, double t1,
+                          uint32_t axes)
 {
     const bool flat = axes == 2, capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
     const bool spins = has_spin(c, flat), round = capsule || c->shape == SPRING_SPHERE;
@@ -457,7 +461,7 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double skin
         for (int i = 0; b->turns && i < 3; i++)
             angle += 2 * length3(subtract(b->end.axis[i], b->start.axis[i]));
     }
-    b->rounding_scale = rounding_scale_at(b, &b->start);
+    b->rounding_scale = rounding_scale_at(b, &b->start, epsilon);
     find_bounds(b, angle, c->bound);
 }
 
@@ -610,7 +614,8 @@ SPRING_INLINE double flush_of(const contact_particle *p, const contact_body *b)
 static double gap_tolerance(const contact_setting *s, const contact_particle *p, const contact_body *b, bool at_end,
                             vector3 x)
 {
-    return same_place * slop_at(s, x, rounding_scale_at(b, at_end ? &b->end : &b->start), p->radius);
+    const double size = rounding_scale_at(b, at_end ? &b->end : &b->start, s->epsilon);
+    return fmax(same_place * (DBL_EPSILON / s->epsilon), same_position) * slop_at(s, x, size, p->radius);
 }
 
 /* [m/s] Velocity of a point of the frame at x. */
@@ -1586,8 +1591,23 @@ static bool end_at_contact(const contact_setting *s, contact_particle *p, const 
     return true;
 }
 
+/* Moves the path of a particle that starts in the skin of a body out of it. Otherwise the skin divided by h would become a
+   velocity. raised: [m] by which this has moved the path */
+static void leave_skin(const contact_setting *s, contact_particle *p, const meeting *m, vector3 *raised)
+{
+    const vector3 n = direction_out(&m->b->start, m->at.normal);
+    const double missing = -m->at.gap - inner(n, *raised);
+    if (m->fraction > 0 || m->start_depth > 0 || !(m->at.gap < -m->slop) || !(missing > 0))
+        return;
+    const vector3 x = add(p->x0, p->d), x1 = add_scaled(x, missing, n);
+    *raised = add_scaled(*raised, missing, n);
+    p->d = add_scaled(p->d, missing, n);
+    spring_contact_record(s, p, m->index, &x, &p->w, &x1, &p->w);
+}
+
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
+    vector3 raised = zero3;
     uint32_t nearby = p->nearby == UINT32_MAX ? near_path(s, p) : p->nearby, clear = 0, last = 0;
     contact_history earlier = {.count = 0};
     p->touched = 0;
@@ -1608,6 +1628,7 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         last = bit;
         earlier.body[earlier.count] = first->index;
         put(&earlier.normal[earlier.count++], first->n_end);
+        leave_skin(s, p, first, &raised);
         const unsigned next_one = (nearby & (nearby - 1)) != 0 ? next_face(s, p, nearby, first) : s->count;
         const vector3 before = p->d;
         const uint32_t cleared = (collide(s, p, first) & CLEAR) != 0 ? last : 0;

@@ -108,9 +108,10 @@ SPRING_INTERNAL void spring_collider_orthonormalise(spring_collider *c, uint32_t
 /* Replaces a collider by its state t after it was set. */
 SPRING_INTERNAL void spring_collider_move(spring_collider *c, double t, uint32_t axes);
 
-/* Places a collider, with a skin [m], for a drift that starts and ends t0 and t1 after the collider was set. */
-SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double t0, double t1,
-                                          uint32_t axes);
+/* Places a collider, with a skin [m], for a drift that starts and ends t0 and t1 after the collider was set. epsilon:
+   rounding error of coordinates */
+SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double skin, double epsilon,
+                                          double t0, double t1, uint32_t axes);
 
 /* [m] The skin of colliders: see contact.c. 0 if none is near a box */
 SPRING_INTERNAL double spring_contact_skin(const spring_collider *c, unsigned count, double epsilon, uint32_t axes);

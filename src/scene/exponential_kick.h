@@ -55,8 +55,8 @@
 /* Reduces the velocities with which particles leave colliders with restitution, by at most the impulse of the impact. The
    kick before this impact has not damped them, and the next would be too late: a body would bounce in every step, and gain
    elastic energy. Friction that exceeds the limit of the smaller impulse is given back. before: velocities before the
-   contacts */
-SPRING_NOINLINE void damp_bounces(const scene_step *s, const scalar *before)
+   contacts. Returns false if a particle is then faster than max_speed */
+SPRING_NOINLINE bool damp_bounces(const scene_step *s, const scalar *before)
 {
     const scalar *const remaining = scene_read(s->scene, ARRAY_SUMS);
     const size_t stride = s->scene->layout.stride;
@@ -85,6 +85,10 @@ SPRING_NOINLINE void damp_bounces(const scene_step *s, const scalar *before)
             }
         }
     }
+    for (size_t i = 0; i < s->particles.count; i++)
+        if (wrong_state(&s->particles, &s->whole, i))
+            return false;
+    return true;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the series */
@@ -216,10 +220,11 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     const scene_stage kicked = {.v = v1};
     end.stage = &kicked;
     end.contacts = WHOLE_STEP_CONTACTS;
-    if (!move(s, kernels->drift_kick_drift, &end))
-        return failed;
-    damp_bounces(s, v1);
-    return (scene_outcome){.finite = true};
+    bool bounces = false;
+    for (unsigned k = 0; k < s->contacts.setting.count; k++)
+        bounces = bounces || s->contacts.setting.body[k].restitution > 0;
+    end.max_speed = bounces ? SCALAR_MAX : end.max_speed;
+    return (scene_outcome){.finite = move(s, kernels->drift_kick_drift, &end) && (!bounces || damp_bounces(s, v1))};
 }
 
 #include "../simd/size_end.h"

@@ -1554,6 +1554,44 @@ static void contacts_of_a_custom_body(void)
     free(s);
 }
 
+static uint32_t level(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    (void)user;
+    gap[0] = y[1];
+    memcpy(normal[0], (double[]){0, 1, 0}, sizeof normal[0]);
+    return 1;
+}
+
+static uint32_t floor_and_wall(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    level(user, y, gap, normal);
+    gap[1] = y[0];
+    memcpy(normal[1], (double[]){1, 0, 0}, sizeof normal[1]);
+    return 2;
+}
+
+/* A particle slides over the floor of a custom body to its wall, and not less far, wherever the body is and however thick. */
+static void corner_of_a_custom_body(void)
+{
+    for (int k = 0; k < 60; k++) {
+        const double at = k % 4 ? random_log(0.1, 100) : 0, thickness = random_log(1, 1e6), speed = random_log(0.1, 10);
+        const double x[3] = {at + 0.7 * speed, 0, 0}, v[3] = {-speed, 0, 0}, g[3] = {0, -gravity, 0}, dt = 1. / 480;
+        const spring_collider c = {.shape = SPRING_CUSTOM, .gap = floor_and_wall, .thickness = thickness, .at = {at}};
+        /* rounding errors of positions, and 1000 slops of the function, see contact.c */
+        const double off = fmax(100 * EPS * (at + 1), 8e3 * DBL_EPSILON * (2 * at + 1 + thickness));
+        spring_scene *s = particle_at(x, v, g, 1);
+        double now[3], w[3] = {-speed, 0, 0};
+        set(s, &c, 1);
+        for (int n = 0; n < 480 && w[0] < -speed / 2; n++) {
+            run(s, with_contacts[k % method_count], dt, 1);
+            get(s, now, w);
+        }
+        CHECK_BELOW(now[0] - at, off, "it stops at the wall");
+        CHECK_BELOW(w[0], off / dt, "a rounding error");
+        free(s);
+    }
+}
+
 /* A wall that starts to move hits the particle that rests on it: (1 + e) V. A plate stops it. */
 /* A taut rope with links of length 0.1 that slides to and fro around a sharp edge of 90 degrees at the origin. The depth to
    which links enter the body [m], with particles of radius r. */
@@ -2355,6 +2393,44 @@ static void waiting_colliders(void)
     }
 }
 
+/* A particle that is put on the ground rests there: a box on it, at a distance, lifts it by the skin, without velocity. A
+   box that waits deep below a plane, or far from a custom body with a bound, does not. */
+static void boxes_on_the_ground(void)
+{
+    for (int k = 0; k < 200; k++) {
+        const bool waits = k % 2;
+        const double away = random_log(5, 1e4), at = random_uniform(-3, 3), g[3] = {0, -gravity, 0}, none[3] = {0};
+        const double radius = k % 3 ? 0 : random_uniform(0, 0.1), x[3] = {at, radius, 0}, angle = random_uniform(0, PI);
+        const double skin = waits ? 0 : 33 * EPS * (away * (fabs(cos(angle)) + sin(angle)) + 4 * 0.5);
+        spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}}, unit_box};
+        if (k % 4 > 1)
+            c[0] =
+                (spring_collider){.shape = SPRING_CUSTOM, .gap = level, .thickness = random_log(1, 1e9), .bound = 50};
+        if (c[0].shape == SPRING_CUSTOM && !waits)
+            c[0].bound = 0;
+        c[0].friction = c[1].friction = k % 5 ? random_uniform(0, 1) : 0;
+        for (int a = 0; a < 3; a++)
+            c[1].half[a] = 0.5;
+        memcpy(c[1].at, (double[]){away * cos(angle), 0.5, away * sin(angle)}, sizeof c[1].at);
+        if (waits)
+            memcpy(c[1].at, (double[]){0, -away - 100, 0}, sizeof c[1].at);
+        const double dt = random_log(1e-3, 1. / 60);
+        spring_scene *s = ball_at(x, none, g, radius, 2);
+        set(s, c, 2);
+        for (int n = 0; n < 60; n++) {
+            double now[3], v[3];
+            uint32_t touches;
+            run(s, with_contacts[k % method_count], dt, 1);
+            get(s, now, v);
+            CHECK(spring_scene_touching(s, &touches, 0, 1) == SPRING_OK && touches == 1, "on the ground alone");
+            CHECK(now[0] == (scalar)at && now[1] >= radius - 32 * EPS && now[1] <= radius + skin + 32 * EPS,
+                  "in its place");
+            CHECK(length(v) == 0 && spring_scene_at_rest(s, 1e-9, 1e-9), "at rest");
+        }
+        free(s);
+    }
+}
+
 /* Two particles on a damped link, with the same velocity v, which changes in a step of 0.01 s with the plane y = 0. */
 static void step_of_pair(const double x[3], double v[3], const double g[3], const spring_collider *c, double dt_G,
                          double impulse[3])
@@ -2418,6 +2494,36 @@ static void damped_pair_leaves(void)
         step_of_pair(x, v, none, &c, random_log(0.5, 1000), impulse);
         for (int a = 0; a < 3; a++)
             CHECK_BELOW(fabs(v[a] - before[a]), 64 * EPS, "its velocity");
+    }
+}
+
+/* max_speed limits velocities after bounces that damping has shortened. */
+static void fastest_bounce(void)
+{
+    for (int k = 0; k < 400; k++) {
+        const spring_collider c = {.shape = SPRING_PLANE,
+                                   .axis = {{0, 1, 0}},
+                                   .restitution = random_uniform(0, 1),
+                                   .friction = random_uniform(0, 2)};
+        const double y = random_uniform(0, 0.02), x[2][3] = {{0, y, 0}, {0.3, y + random_uniform(-0.4, 0.4), 0}};
+        const double v[2][3] = {{random_uniform(-5, 5), random_uniform(-8, 0), 0},
+                                {random_uniform(-5, 5), random_uniform(-8, 3), 0}};
+        const spring_link link = {
+            .b = 1, .rest = hypot(0.3, x[1][1] - y), .stiffness = 100, .damping = random_log(100, 1e4)};
+        spring_scene_def def = {
+            .particles = 2, .links = 1, .link = &link, .position = x[0], .velocity = v[0], .colliders = 1};
+        double fastest = 0, after[6];
+        for (int limited = 0; limited < 3; limited++) {
+            spring_scene *s = scene_of(&def);
+            set(s, &c, 1);
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1) == (limited < 2 ? SPRING_OK : SPRING_EUNSTABLE),
+                  "the velocity after the step is compared");
+            spring_scene_get(s, SPRING_VELOCITY, after, 0, 0, 2);
+            for (int i = 0; i < 6; i++)
+                fastest = fmax(fastest, fabs(after[i]));
+            def.max_speed = limited == 0 ? fastest : fastest * (1 - 4 * EPS);
+            free(s);
+        }
     }
 }
 
@@ -2744,9 +2850,12 @@ static const test tests[] = {
     {"bounces in a lift", bounces_in_a_lift},
     {"ball on an edge", ball_on_an_edge},
     {"waiting colliders", waiting_colliders},
+    {"boxes on the ground", boxes_on_the_ground},
+    {"corner of a custom body", corner_of_a_custom_body},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
     {"damped bounces", damped_bounces},
+    {"the fastest bounce", fastest_bounce},
     {"a damped pair leaves", damped_pair_leaves},
     {"a distant floor", distant_floor},
     {"steps and calls", steps_and_calls},
