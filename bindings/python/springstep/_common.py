@@ -128,22 +128,41 @@ class Guard:
     Short calls of several threads wait for each other. While a long call runs, every other call raises RuntimeError.
     """
 
-    __slots__ = ("_refusal", "_lock", "_busy")
+    __slots__ = ("_refusal", "_lock", "_busy", "_unfinished")
 
     def __init__(self, refusal: str) -> None:
         self._refusal = refusal
         self._lock = threading.RLock()  # a signal handler may call again, between the instructions of a short call
         self._busy = False
+        self._unfinished: Callable[[], object] | None = None  # a change that an interrupt has ended
 
     def _check(self) -> None:
         if self._busy:
             raise RuntimeError(self._refusal)
+        if self._unfinished is not None:
+            self._unfinished()
+            self._unfinished = None
 
     def short(self, function: Callable[..., Result], *arguments: Any) -> Result:
         """Call a function that takes little time."""
         with self._lock:
             self._check()
             return function(*arguments)
+
+    def change(self, function: Callable[[], Result]) -> Result:
+        """Call a function that changes state in C and in Python, and that may be called twice.
+
+        A signal handler may raise an exception between the two changes. The next call then repeats the function, which keeps
+        the objects of both states alive until then.
+        """
+        with self._lock:
+            self._check()
+            while True:
+                self._unfinished = function
+                result = function()
+                if self._unfinished is function:  # otherwise a signal handler has called this object in between
+                    self._unfinished = None
+                    return result
 
     def long(self, function: Callable[..., Result], *arguments: Any) -> Result:
         """Call a function that may take long, or that calls Python."""

@@ -697,7 +697,7 @@ class Scene(Generic[F]):
         """
         if snapshot._scene is not self:
             raise ValueError("snapshot: of another scene")
-        self._guard.short(self._load, snapshot)
+        self._guard.change(lambda: self._load(snapshot))
 
     def save(self) -> bytes:
         """Return the state in a portable format: for `load`, on any processor and in any language.
@@ -732,14 +732,16 @@ class Scene(Generic[F]):
         InvalidError
             If the state is damaged, or that of a scene with another definition. The scene is unchanged.
         """
+        state = bytes(memoryview(state))
+        buffer = ffi.from_buffer(state)
+
         def load() -> int:
-            buffer = ffi.from_buffer(state)
             status: int = self._c("load")(self._pointer, buffer, len(buffer))
             if not status and self._definition["editable"]:
                 self._pinned[:] = _pins_in(state, self._definition["held_forces"])
             return status
 
-        status = self._guard.short(load)
+        status = self._guard.change(load)
         if status:
             invalid("state", f"{len(state)} bytes",
                     reason=f"the state of a scene with another definition: {_difference(state, self.save())}"
@@ -758,8 +760,10 @@ class Scene(Generic[F]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A copy has a state and memory of its own, and the same force."""
+        state = self.save()  # first, because it may finish a change of the force
         force = (None, None) if self._called is None else self._called.given
-        return _copied, (type(self), (self._particles, self._axes), self._definition, force, self.save(), self._bodies)
+        arguments = type(self), (self._particles, self._axes), self._definition, force, state, self._bodies
+        return _copied, arguments, getattr(self, "__dict__", None)
 
     # --- changes
 
@@ -794,7 +798,7 @@ class Scene(Generic[F]):
                 self._bodies = [replace(c) for c in given] if any(c.shape == "custom" for c in given) else []
             return status
 
-        if status := self._guard.short(change):
+        if status := self._guard.change(change):
             if status == lib.SPRING_EINVAL:
                 self._refuse_colliders(array, given)
             fail(status, "colliders", len(given))
@@ -879,7 +883,7 @@ class Scene(Generic[F]):
             self._c("set_force")(self._pointer, *((called.pointer, called.user) if called else (ffi.NULL, ffi.NULL)))
             self._called = called
 
-        self._guard.short(change)
+        self._guard.change(change)
 
     def link(self, index: int) -> tuple[int, int, float, float, float]:
         """Return a link as it is now: a, b, rest [m], stiffness [N/m], damping [N s/m]. a and b may be swapped.
@@ -1013,15 +1017,15 @@ class Scene(Generic[F]):
         first : int
             Index of the first particle.
         """
-        flags = self._flags(pinned)
+        flags, first = self._flags(pinned), natural("first", first)
 
         def change() -> int:
-            status: int = self._ask("set_pinned", natural("first", first), len(flags), ffi.from_buffer("uint8_t[]", flags))
+            status: int = self._c("set_pinned")(self._pointer, first, len(flags), ffi.from_buffer("uint8_t[]", flags))
             if not status:
                 self._pinned[first:first + len(flags)] = flags
             return status
 
-        if status := self._guard.short(change):
+        if status := self._guard.change(change):
             fail(status, "pinned", flags.astype(bool).tolist(), first)
 
     def set_mass(self, mass: ArrayLike, first: int = 0) -> None:

@@ -7,8 +7,11 @@ import math
 import multiprocessing
 import pickle
 import subprocess
+import sys
 import threading
 from concurrent.futures import ProcessPoolExecutor
+from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +20,7 @@ import springstep
 from scenes import FLOATS, OF_SCENES, cloth, fnv, rope, saved_scenes, swing
 from springstep import InvalidError, Scene, ffi, grid, lib
 from springstep._common import Guard
+from springstep._scene import _pins_in
 
 
 @pytest.mark.parametrize("method", OF_SCENES)
@@ -413,6 +417,68 @@ def test_a_wrong_grid(change, field):
     with pytest.raises(springstep.SpringError) as caught:
         grid(**{"count": [3, 2], "spacing": 0.3, "stiffness": 2.7, **change})
     assert caught.value.field == field
+
+
+def pull(t, position, velocity, force):
+    force[1] += 2
+
+
+INTERRUPTED = {
+    "set_force": lambda s, before, state: s.set_force(lambda *_: None),
+    "set_colliders": lambda s, before, state: s.set_colliders([springstep.custom(gap_in_cffi(), 1, gap_data=np.array([-9.0]))]),
+    "set_pinned": lambda s, before, state: s.set_pinned([False, False]),
+    "restore": lambda s, before, state: s.restore(before),
+    "load": lambda s, before, state: s.load(state),
+}
+
+
+def interrupt(scene):
+    raise KeyboardInterrupt
+
+
+def call_again(scene):
+    scene.set_force(lambda *_: None)
+    scene.set_colliders([springstep.sphere([0, 0, -9], 1.0)])
+
+
+@pytest.mark.parametrize("handler", [interrupt, call_again])
+@pytest.mark.parametrize("name", INTERRUPTED)
+def test_a_signal_at_any_line_of_a_change_leaves_c_and_python_alike(name, handler):
+    """A signal handler runs at any line of the package. C must not keep a force or a body that Python has freed."""
+    package = Path(springstep.__file__).parent
+    other = rope(force=pull, editable=True, colliders=1)
+    other.set_pinned([False, True, True])
+    line, lines = 0, math.inf
+    while lines >= line:
+        line, lines = line + 1, 0
+        scene = rope(force=lambda *_: None, editable=True, colliders=1)
+        before = scene.snapshot()
+        scene.set_force(pull)
+        scene.set_pinned([True] * 4)
+
+        def trace(frame, event, argument):
+            nonlocal lines
+            lines += event == "line"
+            if lines == line and event == "line":
+                handler(scene)
+            return trace
+
+        old = sys.gettrace()
+        sys.settrace(lambda frame, *_: trace if Path(frame.f_code.co_filename).parent == package else None)
+        try:
+            INTERRUPTED[name](scene, before, other.save())
+        except KeyboardInterrupt:
+            pass
+        finally:
+            sys.settrace(old)
+        twin = copy.copy(scene)
+        assert int(ffi.cast("intptr_t", scene._called.user)) in scene._memory.view(np.uintp)
+        assert all(collider.gap is not None for collider in scene.get_colliders() if collider.shape == "custom")
+        for each in (scene, twin):
+            assert (each._pinned == _pins_in(scene.save(), False)).all()
+            each.advance(1e-3, 2)
+        assert twin.save() == scene.save()
+    assert line > 10
 
 
 def test_many_steps_are_the_bits_of_single_steps():
