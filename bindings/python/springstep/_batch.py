@@ -20,6 +20,8 @@ _PRECISIONS = {np.dtype(np.float64): ("spring_batch", "double[]"), np.dtype(np.f
 
 def _rounded(field: str, value: Any, dtype: np.dtype[F], underflows: bool = False) -> Any:
     """Return a number in a precision. A finite number must not overflow, or underflow to 0 unless this is allowed."""
+    if not hasattr(value, "__float__"):
+        raise TypeError(f"{field}: a {type(value).__name__}, neither an array nor a number")
     with np.errstate(over="ignore", under="ignore"):
         number = np.asarray(value, dtype)
     if np.isfinite(value) and not (np.isfinite(number) and (underflows or number != 0 or value == 0)):
@@ -71,7 +73,7 @@ class Batch(Generic[F]):
                 raise TypeError(f"{field}: not writeable")
         for field, given in (("omega2", omega2), ("gamma", gamma), ("accel", accel)):
             values: Any = given
-            if values is not None and np.ndim(values) == 0:
+            if np.ndim(values) == 0 and (values is not None or field == "omega2"):
                 values = _rounded(field, values, x.dtype)
                 self._batch.shared |= getattr(lib, f"SPRING_SHARED_{field.upper()}")
             self._parameters[field] = values

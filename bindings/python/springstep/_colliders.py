@@ -73,9 +73,9 @@ class Collider:
         if self.shape not in _SHAPES:
             invalid("colliders.shape", self.shape, place, reason=f"not one of {', '.join(_SHAPES)}")
 
-        def vector(field: str, values: Any) -> list[float]:
-            if np.ndim(values) != 1 or len(values) not in (axes, 3):
-                invalid(f"colliders.{field}", values, place, reason=f"not {axes} numbers")
+        def vector(field: str, values: Any, count: int = axes) -> list[float]:
+            if np.ndim(values) != 1 or len(values) not in (count, 3):
+                invalid(f"colliders.{field}", values, place, reason=f"not {axes} numbers" if count == axes else "not a number")
             return [*map(float, values), 0.0][:3]
 
         c.shape = _SHAPES[self.shape]
@@ -88,7 +88,7 @@ class Collider:
                     invalid(f"colliders.{field}", value, place, reason="not three numbers")
                 getattr(c, field)[2] = value
             else:
-                setattr(c, field, vector(field, value))
+                setattr(c, field, vector(field, value, 3))
         rows: Any = self.axis
         for row, axis in enumerate(rows[:3]):
             c.axis[row] = vector("axis", axis)
@@ -123,7 +123,7 @@ _GAP = "uint32_t (void *, double *, double *, double (*)[3])"
 
 def _is_gap(result: str, arguments: list[str]) -> bool:
     """Return whether C functions with this signature are surfaces of custom bodies."""
-    numbers = all(argument.startswith("double") and argument[-1] in "*]" for argument in arguments[1:])
+    numbers = all(argument in ("double*", "double[3]", "double_Array_3*") for argument in arguments[1:])
     return result in ("uint32_t", "uint", "unsignedint") and len(arguments) == 4 and arguments[0].endswith("*") and numbers
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple, NoReturn, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from springstep._native import ffi, lib
 
@@ -229,6 +229,18 @@ def springs_method(name: MethodName) -> int:
     if not next(method for method in _METHODS if method.name == name).springs:
         fail(lib.SPRING_EUNSUPPORTED, "method", name)
     return number
+
+
+def aligned(values: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
+    """Return an array that C can read."""
+    return np.require(values, dtype, ["C", "A", "E"])
+
+
+def remade(kind: Any, base: Any, arguments: tuple[Any, ...], options: dict[str, Any]) -> Any:
+    """Return an object as its base class makes it, for copies: a subclass may have other arguments."""
+    made = kind.__new__(kind)
+    base.__init__(made, *arguments, **options)
+    return made
 
 
 def step_count(steps: int, field: str = "steps") -> int:

@@ -2,19 +2,19 @@
 """Links of scenes, and grids of particles with their links."""
 from __future__ import annotations
 
+import contextlib
 import operator
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from springstep._common import fail, invalid, names_of
+from springstep._common import aligned, fail, invalid, names_of
 from springstep._native import ffi, lib
 
 _FORMATS: dict[str, Any] = {"double": np.float64, "uint32_t": np.uint32, "double[4]": (np.float64, 4),
                             "uint32_t[4]": (np.uint32, 4)}
-
 
 
 def _dtype(struct: str) -> np.dtype[np.void]:
@@ -136,11 +136,16 @@ def as_c(links: NDArray[np.void]) -> Any:
 
 def _columns(links: Any) -> dict[str, NDArray[Any]]:
     """Return the columns that links have, by name."""
+    if isinstance(links, np.ndarray) and links.dtype == object:
+        links = links.tolist()
     if not isinstance(links, np.ndarray):
         try:
             links = np.array(list(links))
         except ValueError:
             raise ValueError("links: rows of different lengths") from None
+        if links.dtype == object:  # integers of more than 64 bits, or fractions
+            with contextlib.suppress(TypeError, ValueError, OverflowError):
+                links = links.astype(np.float64)
     if names := links.dtype.names:
         columns = {name: links[name] for name in names}
         if (ends := columns.pop("ends", None)) is not None and ends.shape == (len(links), 2):
@@ -150,8 +155,6 @@ def _columns(links: Any) -> dict[str, NDArray[Any]]:
         if missing or unknown or links.ndim != 1:
             raise ValueError(f"links: missing fields {missing}, unknown fields {unknown}, shape {links.shape}")
         return columns
-    if links.dtype == object:
-        return _columns(links.tolist())
     if links.size == 0:
         links = np.empty((0, 5))
     if links.dtype.kind not in "iuf" or links.ndim != 2 or links.shape[1] not in (2, 5):
@@ -189,7 +192,10 @@ def joined(links: Any, position: NDArray[np.float64] | None, **given: ArrayLike 
     if "rest" not in columns and given.get("rest") is None and position is not None:
         inside = (result["a"] < len(position)) & (result["b"] < len(position))  # C refuses the others
         apart = position[result["b"][inside]] - position[result["a"][inside]]
-        result["rest"][inside] = apart[:, 0] if position.shape[1] == 1 else np.linalg.norm(apart, axis=1)
+        result["rest"][inside] = abs(apart[:, 0]) if position.shape[1] == 1 else np.linalg.norm(apart, axis=1)
+        if position.shape[1] == 1:  # b must be above a
+            down = np.flatnonzero(inside)[apart[:, 0] < 0]
+            result["a"][down], result["b"][down] = result["b"][down], result["a"][down]
     return result
 
 
@@ -225,8 +231,45 @@ def components(particles: int, links: ArrayLike) -> tuple[int, NDArray[np.uint32
     return count, component
 
 
-def natural(field: str, index: int) -> int:
-    """Return an index >= 0: unlike indices of lists, indices of particles do not count from the end."""
-    if index < 0:
-        fail(lib.SPRING_ERANGE, field, index)
-    return index
+def natural(field: str, index: SupportsIndex) -> int:
+    """Return an index >= 0 of 32 bits: unlike indices of lists, indices of particles do not count from the end."""
+    number = operator.index(index)
+    if not 0 <= number < 2**32:
+        fail(lib.SPRING_ERANGE, field, number)
+    return number
+
+
+def weighted(links: ArrayLike | None) -> NDArray[np.void]:
+    """Return a copy of weighted links, as an array of WEIGHTED_LINK. The fields of a structured array have any order."""
+    given: Any = [] if links is None else links
+    names = [*(WEIGHTED_LINK.names or ())]
+    if fields := getattr(getattr(given, "dtype", None), "names", None):
+        if sorted(fields) != sorted(names):
+            raise ValueError(f"weighted_links: fields {[*fields]}, not {names}")
+        given = given[names]  # NumPy converts by position
+    array = np.array(given, WEIGHTED_LINK, order="C", ndmin=1)
+    if array.ndim != 1:
+        raise ValueError(f"weighted_links: its shape is {array.shape}, not (weighted_links,)")
+    return array
+
+
+def lend(definition: Any, given: dict[str, NDArray[Any]], check: Callable[..., int] = lib.spring_scene_check,
+         methods: tuple[str, ...] = ()) -> None:
+    """Let a definition point to arrays, which the caller keeps, and raise the exception if C refuses it."""
+    for field, array in given.items():
+        setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), ffi.from_buffer(array)))
+    wrong, place = ffi.new("const char **"), ffi.new("size_t *")
+    if not (status := check(definition, wrong, place)):
+        return
+    named, index = ffi.string(wrong[0]).decode() if wrong[0] else None, place[0]
+    name, _, part = (named or "").partition(".")
+    if name in given and index < len(given[name]):
+        row = given[name][index]
+        named = f"particle_{name}" if name in ("radius", "friction") else named
+        fail(status, named, (row[part] if part else row).tolist(), index)
+    if name == "methods":
+        fail(status, named, methods)
+    if name == "flags":
+        fail(status, "tension_only", True)
+    value = getattr(definition, name, None)
+    fail(status, named, value if isinstance(value, (int, float)) else None)

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from springstep._common import fail, invalid
-from springstep._links import LINK, WEIGHTED_LINK, as_c, grid_as_c, joined
+from springstep._common import aligned, fail, invalid
+from springstep._links import LINK, WEIGHTED_LINK, as_c, grid_as_c, joined, lend, natural, weighted
 from springstep._native import ffi, lib
 
 
@@ -23,7 +23,7 @@ class Mesh(NamedTuple):
 
 
 def _positions(position: ArrayLike) -> NDArray[np.float64]:
-    array = np.ascontiguousarray(position, np.float64)
+    array = aligned(position, np.float64)
     array = array[:, np.newaxis] if array.ndim == 1 else array
     if array.ndim != 2 or not 1 <= array.shape[1] <= 3:
         raise ValueError(f"position: its shape is {array.shape}, not (particles, axes)")
@@ -45,23 +45,25 @@ def _corners(triangles: ArrayLike, particles: int) -> NDArray[np.uint32]:
         raise ValueError(f"triangles: an array of {array.dtype} and shape {array.shape}, not integers, (triangles, 3)")
     if (outside := np.flatnonzero(((array < 0) | (array >= particles)).any(1))).size:
         fail(lib.SPRING_ERANGE, "triangles", array[outside[0]].tolist(), int(outside[0]))
-    return np.ascontiguousarray(array, np.uint32)
+    return aligned(array, np.uint32)
+
+
+def _each(field: str, values: ArrayLike, particles: int, dtype: DTypeLike) -> NDArray[Any]:
+    array = aligned(values, dtype)
+    if array.shape != (particles,):
+        raise ValueError(f"{field}: its shape is {array.shape}, not {(particles,)}")
+    return array
 
 
 def _flags(pinned: ArrayLike | None, particles: int) -> Any:
-    if pinned is None:
-        return ffi.NULL
-    flags = np.ascontiguousarray(pinned, np.bool_)
-    if flags.shape != (particles,):
-        raise ValueError(f"pinned: its shape is {flags.shape}, not {(particles,)}")
-    return ffi.from_buffer("uint8_t[]", flags)
+    return ffi.NULL if pinned is None else ffi.from_buffer("uint8_t[]", _each("pinned", pinned, particles, np.bool_))
 
 
 def _work(count: int, kind: str = "uint32_t") -> Any:
     return ffi.new(f"{kind}[]", max(count, 1))
 
 
-def _made(kind: np.dtype[np.void], call: Callable[[Any, Any], int], field: str, reason: str | None,
+def _made(kind: np.dtype[np.void], call: Callable[..., int], field: str, reason: str | None,
           **numbers: float) -> NDArray[np.void]:
     """Return what a function of C makes that first counts. It is called with a pointer to links, and the count. An
     error names the number that is negative or not finite, or else the field."""
@@ -72,8 +74,10 @@ def _made(kind: np.dtype[np.void], call: Callable[[Any, Any], int], field: str, 
         result = np.empty(count[0], kind)
         status = call(ffi.cast(c_name, ffi.from_buffer(result)), count)
     for name, value in numbers.items() if status else ():
-        if not 0 <= value < np.inf or (name == "fraction" and value == 0):
+        if not 0 <= value < np.inf or (name in ("fraction", "spacing") and value == 0):
             invalid(name, value)
+    if status == lib.SPRING_EINVAL and "rigidity" in numbers and call(ffi.cast(c_name, 0), count, 0.0) == lib.SPRING_OK:
+        invalid("rigidity", numbers["rigidity"], reason="the stiffness or the damping of a link is not finite")
     if status == lib.SPRING_EINVAL:
         invalid(field, None, reason=reason)
     if status:
@@ -105,9 +109,9 @@ def bend_rod(position: ArrayLike, rigidity: float, *, pinned: ArrayLike | None =
     """
     at = _positions(position)
     flags = _flags(pinned, len(at))
-    return _made(WEIGHTED_LINK, lambda out, count: lib.spring_bend_rod(
+    return _made(WEIGHTED_LINK, lambda out, count, rigidity=rigidity: lib.spring_bend_rod(
         len(at), at.shape[1], ffi.from_buffer("double[]", at), flags, rigidity, damping_time, out, count),
-        "position", "neighbouring particles are at one place", rigidity=rigidity, damping_time=damping_time)
+        "position", "neighbouring particles are at one place, or too far apart", rigidity=rigidity, damping_time=damping_time)
 
 
 def bend_grid(count: Iterable[SupportsIndex], spacing: float, rigidity: float, *, pinned: ArrayLike | None = None,
@@ -135,9 +139,9 @@ def bend_grid(count: Iterable[SupportsIndex], spacing: float, rigidity: float, *
     sheet = grid_as_c(count, spacing=spacing, axes=3)
     flags = _flags(pinned, int(np.prod([max(number, 1) for number in sheet.count])))
     families = lib.SPRING_BEND_ROWS | (lib.SPRING_BEND_DIAGONALS if diagonals else 0)
-    return _made(WEIGHTED_LINK, lambda out, number: lib.spring_bend_grid(
+    return _made(WEIGHTED_LINK, lambda out, number, rigidity=rigidity: lib.spring_bend_grid(
         sheet, flags, families, rigidity, damping_time, out, number),
-        "count", "not two directions with more than one particle", rigidity=rigidity, damping_time=damping_time)
+        "count", "not two directions with more than one particle", spacing=spacing, rigidity=rigidity, damping_time=damping_time)
 
 
 def bend_mesh(position: ArrayLike, triangles: ArrayLike, rigidity: float, *, pinned: ArrayLike | None = None,
@@ -165,10 +169,24 @@ def bend_mesh(position: ArrayLike, triangles: ArrayLike, rigidity: float, *, pin
     at = _in_space(position)
     corners = _corners(triangles, len(at))
     flags, work = _flags(pinned, len(at)), _work(len(at) + 6 * len(corners) + 1)
-    return _made(WEIGHTED_LINK, lambda out, count: lib.spring_bend_mesh(
+    return _made(WEIGHTED_LINK, lambda out, count, rigidity=rigidity: lib.spring_bend_mesh(
         len(at), ffi.from_buffer("double[]", at), len(corners), ffi.from_buffer("uint32_t[]", corners), flags, rigidity,
         damping_time, out, count, work), "triangles", "a triangle has no area, or an edge has more than two triangles",
         rigidity=rigidity, damping_time=damping_time)
+
+
+def _definition(position: ArrayLike, links: ArrayLike, pinned: ArrayLike | None, weighted_links: ArrayLike | None,
+                columns: dict[str, ArrayLike | None], mass: ArrayLike = 1.0) -> tuple[Any, dict[str, NDArray[Any]]]:
+    """Return a definition of C, and its arrays, which the caller keeps."""
+    at = _positions(position)
+    given = {"position": at, "link": joined(links, at, **columns), "weighted_link": weighted(weighted_links),
+             "mass": _each("mass", np.full(len(at), mass) if np.ndim(mass) == 0 else mass, len(at), np.float64)}
+    if pinned is not None:
+        given["pinned"] = _each("pinned", pinned, len(at), np.bool_)
+    definition = ffi.new("spring_scene_def *", {"axes": at.shape[1], "particles": len(at), "links": len(given["link"]),
+                                                "weighted_links": len(given["weighted_link"])})
+    lend(definition, given)
+    return definition, given
 
 
 def tethers(position: ArrayLike, links: ArrayLike, pinned: ArrayLike, *, fraction: float = 0.05, slack: float = 0.0,
@@ -194,15 +212,8 @@ def tethers(position: ArrayLike, links: ArrayLike, pinned: ArrayLike, *, fractio
     ndarray of LINK
         One tether for each particle that hangs on a pinned one and is not next to it.
     """
-    at = _positions(position)
-    link = joined(links, at, **columns)
-    weighted = np.ascontiguousarray([] if weighted_links is None else weighted_links, WEIGHTED_LINK)
-    definition = ffi.new("spring_scene_def *", {
-        "axes": at.shape[1], "particles": len(at), "links": len(link), "position": ffi.from_buffer("double[]", at),
-        "pinned": _flags(pinned, len(at)), "link": as_c(link), "weighted_links": len(weighted),
-        "weighted_link": ffi.cast("spring_weighted_link *", ffi.from_buffer(weighted)),
-    })
-    work, distance = _work(2 * len(at)), _work(2 * len(at), "double")
+    definition, given = _definition(position, links, pinned, weighted_links, columns)
+    work, distance = _work(2 * definition.particles), _work(2 * definition.particles, "double")
     return _made(LINK, lambda out, count: lib.spring_links_tethers(definition, fraction, slack, out, count, work, distance),
                  "links", None, fraction=fraction, slack=slack)
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from springstep._colliders import Collider, colliders_from
-from springstep._common import (Guard, MethodName, SpringError, fail, fail_step, finite, invalid, method_number, methods,
-                                names_of, step_count)
+from springstep._common import (Guard, MethodName, SpringError, aligned, fail, fail_step, invalid, method_number, methods,
+                                names_of, remade, step_count)
 from springstep._force import AnyForce, CForce, PythonForce, called_force
-from springstep._links import WEIGHTED_LINK, Grid, as_c, joined, natural
+from springstep._links import WEIGHTED_LINK, Grid, joined, lend, natural, weighted
 from springstep._native import ffi, lib
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ class Scene(Generic[F]):
         if self._dtype not in _PREFIXES:
             raise TypeError("dtype: not float64 or float32")
         self._prefix = _PREFIXES[self._dtype]
-        positions = np.ascontiguousarray(position, np.float64)
+        positions = aligned(position, np.float64)
         if positions.ndim == 1:
             positions = positions[:, np.newaxis]
         if positions.ndim != 2 or not 1 <= positions.shape[1] <= 3:
@@ -203,14 +203,11 @@ class Scene(Generic[F]):
         self._undo = undo
         self._guard = Guard("the scene is being advanced, or was called from its own force")
 
-        weighted = np.ascontiguousarray([] if weighted_links is None else weighted_links, WEIGHTED_LINK)
-        if weighted.ndim != 1:
-            raise ValueError(f"weighted_links: its shape is {weighted.shape}, not (weighted_links,)")
-
-        given: dict[str, NDArray[Any]] = {"position": positions, "link": link, "weighted_link": weighted}
+        bending = weighted(weighted_links)
+        given: dict[str, NDArray[Any]] = {"position": positions, "link": link, "weighted_link": bending}
         definition = ffi.new(f"{self._prefix}_def *", {
-            "axes": self._axes, "particles": self._particles, "links": self._links, "weighted_links": len(weighted), "drag": drag, "max_speed": max_speed,
-            "colliders": min(natural("colliders", colliders), 2**32 - 1),
+            "axes": self._axes, "particles": self._particles, "links": self._links, "weighted_links": len(bending), "drag": drag, "max_speed": max_speed,
+            "colliders": natural("colliders", colliders),
             "gravity": self._vector("gravity", gravity) if gravity is not None else [],
         })
         for flag, wanted in (("EDITABLE", editable), ("NO_UNDO", not undo),
@@ -239,12 +236,13 @@ class Scene(Generic[F]):
             given["friction"] = self._numbers("particle_friction", particle_friction, (self._particles,))
         if particle_mask is not None:
             given["mask"] = self._masks(particle_mask)
-        lent = {field: ffi.from_buffer(array) for field, array in given.items()}
-        for field, buffer in lent.items():
-            setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), buffer))
+        for field in ("radius", "friction"):  # C reads them only if there are colliders
+            values = given.get(field, np.empty(0))
+            for row in np.flatnonzero(~((values >= 0) & (values < np.inf)))[:1].tolist():
+                invalid(f"particle_{field}", values[row].item(), row)
         # For copies. Positions, velocities, gravity and the force are part of the state.
         self._definition: dict[str, Any] = {
-            "links": link, "weighted_links": weighted.copy(), "mass": np.array(mass), "pinned": self._pinned.copy(), "drag": drag,
+            "links": link, "weighted_links": bending, "mass": np.array(mass), "pinned": self._pinned.copy(), "drag": drag,
             "force_ignores_velocity": force_ignores_velocity, "methods": names, "editable": editable, "undo": undo,
             "dtype": self._dtype, "tension_only": tension_only, "held_forces": held_forces, "max_speed": max_speed,
             "colliders": colliders, "particle_radius": np.array(particle_radius),
@@ -253,9 +251,7 @@ class Scene(Generic[F]):
         if force is not None:  # for what depends on whether there is one
             definition.force = lib.springstep_force if self._dtype == np.float64 else lib.springstep_forcef
 
-        wrong, index = ffi.new("const char **"), ffi.new("size_t *")
-        if status := self._c("check")(definition, wrong, index):
-            self._refuse(status, ffi.string(wrong[0]).decode() if wrong[0] else None, index[0], definition, given, names)
+        lend(definition, given, self._c("check"), names)
         size = ffi.new("size_t *")
         self._c("bytes")(definition, size)
         self._memory = np.empty(size[0], np.uint8)
@@ -304,11 +300,14 @@ class Scene(Generic[F]):
         array = np.asarray(values, np.float64)
         if array.shape != (self._axes,):
             raise ValueError(f"{field}: its shape is {array.shape}, not ({self._axes},)")
-        return [finite(field, value) for value in array.tolist()]
+        with np.errstate(over="ignore"):
+            for value in array[~np.isfinite(array.astype(self._dtype))][:1].tolist():
+                invalid(field, value)
+        return [*map(float, array)]
 
     @staticmethod
     def _numbers(field: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-        array = np.asarray(values, np.float64, order="C")
+        array = aligned(values, np.float64)
         if 0 < array.ndim == len(shape) - 1 and shape[-1] == 1:
             array = array[:, np.newaxis]
         if array.shape != shape:
@@ -332,20 +331,29 @@ class Scene(Generic[F]):
             invalid("particle_mask", array[wrong[0]].item(), int(wrong[0]), "not an integer from 0 to 2^32 - 1")
         return masks
 
-    def _refuse(self, status: int, field: str | None, index: int, definition: Any, given: dict[str, NDArray[Any]],
-                names: tuple[str, ...]) -> NoReturn:
-        """Raise the exception for an invalid definition."""
-        name, _, part = (field or "").partition(".")
-        if name in given and index < len(given[name]):
-            value = given[name][index]
-            field = f"particle_{name}" if name in ("radius", "friction") else field
-            fail(status, field, (value[part] if part else value).tolist(), index)
-        if name == "methods":
-            fail(status, field, names)
-        if name == "flags":
-            fail(status, "tension_only", True)
-        value = getattr(definition, name, None)
-        fail(status, field, value if isinstance(value, (int, float)) else None)
+    def _count(self, first: int, count: int | None) -> int:
+        """Return a number of particles, by default all from the first on."""
+        count = max(0, self._particles - first) if count is None else count
+        if not 0 <= count <= self._particles:
+            fail(lib.SPRING_ERANGE, "first, count", (first, count))
+        return count
+
+    def _set_rows(self, name: str, kind: str, field: str, array: NDArray[Any], first: int) -> None:
+        """Change consecutive things by a function of C. An error names the first value that it refuses."""
+        first, pointer = natural("first", first), ffi.cast(kind, ffi.from_buffer(array))
+        status = self._ask(name, first, len(array), pointer)
+        if status == lib.SPRING_EINVAL:
+            memory = self._guard.short(self._memory.copy)  # a scene, too, in which one row after the other is changed
+            copied = ffi.cast(f"{self._prefix} *", ffi.from_buffer(memory))
+            for row in range(len(array)):
+                if self._c(name)(copied, first + row, 1, pointer + row):
+                    value = array[row]
+                    for part in _VALUES if value.dtype.names else ():
+                        if not 0 <= value[part] <= np.finfo(self._dtype).max:
+                            fail(status, f"{field}.{part}", value[part].item(), first + row)
+                    fail(status, field, value.tolist(), first + row)
+        if status:
+            fail(status, "first, count" if status == lib.SPRING_ERANGE else field, (first, len(array)))
 
     def _run(self, name: str, *arguments: Any) -> int:
         """Call a C function that may call the force, and raise the exception of the force."""
@@ -425,10 +433,13 @@ class Scene(Generic[F]):
         Parameters
         ----------
         v_tol : float
-            Largest speed [m/s].
+            Largest speed >= 0 [m/s].
         a_tol : float
-            Largest acceleration of a free particle [m/s^2].
+            Largest acceleration of a free particle >= 0 [m/s^2].
         """
+        for field, value in (("v_tol", v_tol), ("a_tol", a_tol)):
+            if not value >= 0:
+                invalid(field, value)
         return bool(self._guard.long(self._run, "at_rest", v_tol, a_tol))
 
     # --- steps
@@ -548,7 +559,7 @@ class Scene(Generic[F]):
 
     def _get(self, quantity: int, first: int, count: int | None, out: NDArray[Any] | None) -> NDArray[Any]:
         if out is None:
-            out = np.empty((max(0, self._particles - first) if count is None else count, self._axes), self._dtype)
+            out = np.empty((self._count(first, count), self._axes), self._dtype)
         elif not self._fits(out):
             raise TypeError(f"out: not a writeable array of float64 or float32, (count, {self._axes}), with rows in one piece")
         elif count is not None and count != len(out):
@@ -695,6 +706,8 @@ class Scene(Generic[F]):
         snapshot : Snapshot
             See `snapshot`.
         """
+        if not isinstance(snapshot, Snapshot):
+            raise TypeError(f"snapshot: a {type(snapshot).__name__}, not a Snapshot")
         if snapshot._scene is not self:
             raise ValueError("snapshot: of another scene")
         self._guard.change(lambda: self._load(snapshot))
@@ -835,7 +848,7 @@ class Scene(Generic[F]):
         count : int, optional
             Number of particles; by default all from `first` on.
         """
-        mask = np.empty(max(0, self._particles - first) if count is None else count, np.uint32)
+        mask = np.empty(self._count(first, count), np.uint32)
         pointer = ffi.cast("uint32_t *", ffi.from_buffer(mask))
         if status := self._ask("touching", pointer, natural("first", first), len(mask)):
             if status == lib.SPRING_EDISABLED:
@@ -859,7 +872,9 @@ class Scene(Generic[F]):
             [count, 2, 3]: of each collider the linear impulse [N s] and the angular impulse [N m s] about `at` at the end
             of the call.
         """
-        sums = np.empty((natural("count", count), 2, 3))
+        if not 0 <= count <= 32:
+            fail(lib.SPRING_ERANGE, "first, count", (first, count))
+        sums = np.empty((count, 2, 3))
         pointer = ffi.cast("spring_impulse *", ffi.from_buffer(sums))
         if status := self._ask("impulses", pointer, natural("first", first), count):
             if status == lib.SPRING_EDISABLED:
@@ -936,14 +951,7 @@ class Scene(Generic[F]):
         first : int
             Index of the first link.
         """
-        array = joined(links, None)
-        status = self._ask("set_links", natural("first", first), len(array), as_c(array))
-        if status == lib.SPRING_EINVAL:
-            for field in _VALUES:
-                if (wrong := np.flatnonzero(~((array[field] >= 0) & np.isfinite(array[field])))).size:
-                    fail(status, f"link.{field}", array[field][wrong[0]].item(), first + int(wrong[0]))
-        if status:
-            fail(status, "first, count" if status == lib.SPRING_ERANGE else "links", (first, len(array)))
+        self._set_rows("set_links", "spring_link *", "link", joined(links, None), first)
 
     def set_weighted_links(self, links: ArrayLike, first: int = 0) -> None:
         """Change weighted links of an editable scene, all of them or none. Their particles are those of the definition.
@@ -955,11 +963,7 @@ class Scene(Generic[F]):
         first : int
             Index of the first link.
         """
-        array = np.ascontiguousarray(links, WEIGHTED_LINK)
-        status = self._ask("set_weighted_links", natural("first", first), array.size,
-                           ffi.cast("spring_weighted_link *", ffi.from_buffer(array)))
-        if status:
-            fail(status, "first, count" if status == lib.SPRING_ERANGE else "weighted_links", (first, array.size))
+        self._set_rows("set_weighted_links", "spring_weighted_link *", "weighted_link", weighted(links), first)
 
     def weighted_link(self, index: int) -> NDArray[np.void]:
         """Return a weighted link as it is now, of WEIGHTED_LINK, without axes.
@@ -1039,8 +1043,7 @@ class Scene(Generic[F]):
             Index of the first particle.
         """
         array = self._numbers("mass", mass, (np.size(mass),))
-        if status := self._ask("set_mass", natural("first", first), len(array), ffi.from_buffer("double[]", array)):
-            fail(status, "mass", array.tolist(), first)
+        self._set_rows("set_mass", "double *", "mass", array, first)
 
     def drive(self, particle: int, target: ArrayLike | None, duration: float = 0.0) -> None:
         """Set the velocity of a pinned particle so that it reaches a target. It keeps this velocity until it is changed.

@@ -57,7 +57,7 @@ class _Grid:
 
     def _say(self, field: str, done: bool) -> None:
         if not done:
-            invalid(field, ffi.string(self.c.message).decode())
+            invalid(field, ffi.string(self.c.message).decode(errors="replace"))  # C may cut the last character
 
     def measure(self, first: int, count: int) -> NDArray[np.void]:
         """Return the rows of some points."""

@@ -88,6 +88,9 @@ def test_what_would_be_copied_is_refused(field, array):
 def test_memory_that_is_shared_or_fixed_is_refused():
     x, fixed = np.ones(4), np.ones(2)
     fixed.flags.writeable = False
+    for omega2 in (None, "4"):
+        with pytest.raises(TypeError, match=f"^omega2: a {type(omega2).__name__}, neither"):
+            Batch(x, np.zeros(len(x)), omega2)
     with pytest.raises(ValueError, match="^v: shares memory with x"):
         Batch(x[:2], x[1:3], 1.0)
     with pytest.raises(TypeError, match="^v: not writeable"):

@@ -35,6 +35,8 @@ def test_tethers_keep_a_rope_from_stretching():
         scene.advance(1 / 240, 240 * 20)
         longest.append(scene.position()[-1, 0] / (39 * 0.05) - 1)
     assert longest[0] > 0.2 and longest[1] < 0.005
+    g = grid([4000], 0.05, 70.0, pinned=["first_x"])
+    assert len(tethers(g.position, g.links, g.pinned.tolist())) == 3998, "a list, too"
 
 
 def test_sheets():

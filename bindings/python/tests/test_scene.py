@@ -88,6 +88,8 @@ def test_a_snapshot_brings_back_what_was(dtype):
     assert (scene.position() == after[1]).all()
     with pytest.raises(ValueError, match="snapshot"):
         cloth(dtype=dtype, editable=True).restore(before)
+    with pytest.raises(TypeError, match="^snapshot: a Scene, not a Snapshot"):
+        scene.restore(scene)
 
 
 def advanced(scene):
@@ -267,6 +269,11 @@ def test_what_links_do_not_have_follows_from_the_positions(axes):
     ([(0, 1), (-1, 2)], {"stiffness": 1}, springstep.RangeError, r"link.a\[1\] = -1"),
     ([(0, 2**32)], {"stiffness": 1}, springstep.RangeError, r"link.b\[0\] = 4294967296"),
     ([(0, 3)], {"stiffness": 1}, springstep.RangeError, r"link.b\[0\] = 3"),
+    ([(0, 2**70)], {"stiffness": 1}, springstep.RangeError, r"link.b\[0\] = 1.18"),
+    ([(0, 10**400)], {"stiffness": 1}, ValueError, "links: an array of object"),
+    ([(0, None)], {"stiffness": 1}, springstep.InvalidError, r"link.b\[0\] = nan: not an integer"),
+    ([(0, Fraction(1, 2))], {"stiffness": 1}, springstep.InvalidError, r"link.b\[0\] = 0.5: not an integer"),
+    (np.array([(0, "b")], object), {"stiffness": 1}, ValueError, "links: an array of <U21"),
     (structured(["a", "b", "rest"], [(0, 1, 0.3)]), {"stiffness": 1, "rest": 1}, TypeError, "rest: the links have it, too"),
     (LINKS, {"damping": 0.1}, TypeError, "damping: the links have it, too"),
     (ENDS, {}, TypeError, "stiffness: missing"),
@@ -285,6 +292,11 @@ def test_what_links_do_not_have_follows_from_the_positions(axes):
 def test_wrong_links_are_named(links, values, kind, named):
     with pytest.raises(kind, match=f"^{named}"):
         Scene([[0, 0], [1, 0], [2, 0]], links, **values)
+
+
+def test_links_on_one_axis_are_at_rest_in_either_direction():
+    scene = Scene([2.0, 0.5, 1.0], [(0, 1), (1, 2), (0, 2)], stiffness=[1, 2, 3])
+    assert [scene.link(i)[:4] for i in range(3)] == [(1, 0, 1.5, 1), (1, 2, 0.5, 2), (2, 0, 1, 3)] and scene.at_rest(0, 0)
 
 
 def test_a_scene_from_a_grid():
@@ -397,6 +409,21 @@ def test_a_shape_that_is_wrong_is_named(change):
     (lambda s: s.drive(0, [0, 1e300, 0], 1e-300), springstep.InvalidError, "duration"),
     (lambda s: s.drive(0, [0, 1, 0], math.nan), springstep.InvalidError, "duration"),
     (lambda s: s.tension(5), springstep.RangeError, "link"),
+    (lambda s: s.tension(2**70), springstep.RangeError, "link"),
+    (lambda s: s.link(2**70), springstep.RangeError, "link"),
+    (lambda s: s.find_link(0, 2**40), springstep.RangeError, "b"),
+    (lambda s: s.position(0, 10**13), springstep.RangeError, "first, count"),
+    (lambda s: s.position(0, -1), springstep.RangeError, "first, count"),
+    (lambda s: s.position(2**70), springstep.RangeError, "first"),
+    (lambda s: s.touching(0, 10**13), springstep.RangeError, "first, count"),
+    (lambda s: s.impulses(2**33), springstep.RangeError, "first, count"),
+    (lambda s: s.set_position([[0, 0, 0]], 2**70), springstep.RangeError, "first"),
+    (lambda s: s.at_rest(math.nan, 1), springstep.InvalidError, "v_tol"),
+    (lambda s: s.at_rest(1, -1), springstep.InvalidError, "a_tol"),
+    (lambda s: rope(particle_radius=[0, 0, -1, 0, 0, 0]), springstep.InvalidError, "particle_radius"),
+    (lambda s: rope(particle_friction=[0, 0, math.nan, 0, 0, 0]), springstep.InvalidError, "particle_friction"),
+    (lambda s: rope(dtype=np.float32, gravity=[0, 1e39, 0]), springstep.InvalidError, "gravity"),
+    (lambda s: rope(dtype=np.float32).set_gravity([0, 1e39, 0]), springstep.InvalidError, "gravity"),
 ])
 def test_what_a_scene_refuses(call, kind, field):
     scene = rope()
@@ -659,13 +686,65 @@ def test_set_links():
     before = fnv(scene), scene.link(1)
     with pytest.raises(springstep.InvalidError, match=r"link.rest\[3\]"):
         scene.set_links([(*links[0][:2], 0.1, 1, 0), links[1], (*links[2][:2], -1, 1, 0)], first=1)
-    with pytest.raises(springstep.InvalidError, match="links"):
-        scene.set_links([(0, 2, 1, 1, 0)])
+    with pytest.raises(springstep.InvalidError, match=r"^link\[1\] = \(1, 3, "):
+        scene.set_links([(0, 1, 1, 1, 0), (1, 3, 1, 1, 0)])
     with pytest.raises(springstep.RangeError):
         scene.set_links(links, first=4)
     with pytest.raises(springstep.SpringError):
         rope().set_links(links)
     assert (fnv(scene), scene.link(1)) == before
+
+
+@FLOATS
+def test_the_first_bad_row_is_named(dtype):
+    bend = springstep.bend_rod(np.arange(6.0), 1.0)
+    scene = rope(editable=True, dtype=dtype, weighted_links=bend)
+    before = scene.save()
+    links = np.array([(*scene.link(i), 0) for i in range(5)], springstep.LINK)
+    for set_rows, rows, bad in ((scene.set_links, links, {"stiffness": 1e300 if dtype == np.float32 else math.inf, "damping": -1}),
+                                (scene.set_weighted_links, bend, {"rest": -1, "particle": [1, 2, 3, 4]})):
+        for field, value in bad.items():
+            wrong = rows[1:].copy()
+            wrong[field][2] = value
+            with pytest.raises(springstep.InvalidError) as caught:
+                set_rows(wrong, first=1)
+            name = "link" if rows is links else "weighted_link"
+            assert (caught.value.field, caught.value.index) == (name if field == "particle" else f"{name}.{field}", 3)
+    with pytest.raises(springstep.InvalidError, match=r"^mass\[3\] = 0.0: "):
+        scene.set_mass([1, 2, 0, -1], first=1)
+    assert scene.save() == before
+
+
+def unaligned(values):
+    array = np.asarray(values)
+    memory = np.zeros(array.nbytes + 1, np.uint8)
+    memory[1:] = np.frombuffer(array.tobytes(), np.uint8)
+    return memory[1:].view(array.dtype).reshape(array.shape)
+
+
+def test_arrays_that_are_not_aligned_are_copied(monkeypatch):
+    """C reads no array at an odd address."""
+    seen = []
+
+    class Watched:
+        def __getattr__(self, name):
+            return getattr(ffi, name)
+
+        def from_buffer(self, *arguments):
+            seen.append(arguments[-1].ctypes.data % min(8, arguments[-1].itemsize))
+            return ffi.from_buffer(*arguments)
+
+    for module in ("_links", "_mesh", "_scene"):
+        monkeypatch.setattr(f"springstep.{module}.ffi", Watched())
+    g = grid([6], 0.3, 170.0)
+    scene = Scene(unaligned(g.position), unaligned(g.links), velocity=unaligned(g.position), mass=unaligned(np.ones(6)), editable=True,
+                  weighted_links=unaligned(springstep.bend_rod(g.position, 1.0)), particle_radius=unaligned(np.ones(6)))
+    scene.set_position(unaligned(g.position))
+    scene.set_mass(unaligned(np.ones(6)))
+    scene.set_weighted_links(unaligned(springstep.bend_rod(g.position, 1.0)))
+    scene.tear(unaligned(np.ones(5)))
+    springstep.bend_rod(unaligned(g.position), 1.0)
+    assert len(seen) > 10 and not any(seen)
 
 
 def test_transform():
@@ -841,6 +920,7 @@ def test_custom_bodies(made, dtype):
     (None, None, r"colliders\[0\].gap: a NoneType, not a function in C"),
     (ctypes.CFUNCTYPE(None, *ARGUMENTS)(lambda *_: None), None, r"colliders\[0\].gap: its signature is void .*, not uint32_t \("),
     (ffi.cast("uint32_t(*)(void *, double *, double *)", 1), None, r"colliders\[0\].gap: its signature is "),
+    (ffi.cast("uint32_t(*)(void *, double *, double **, double *)", 1), None, r"colliders\[0\].gap: its signature is "),
     (ffi.cast("spring_gap_fn *", 0), None, r"colliders\[0\].gap: a null pointer"),
     (ffi.cast("spring_gap_fn *", 1), [0.25], r"colliders\[0\].gap_data: not a contiguous array"),
 ])

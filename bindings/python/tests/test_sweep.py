@@ -79,6 +79,7 @@ def test_the_plan():
     ("methods", {"over": {}, "methods": "rkn8"}), ("scene", {"over": {}, "scene": "sea"}),
     ("measure", {"over": {}, "measure": "error"}),
     ("over", {"over": {"omega_dt": "1:2:9000000000", "damping_ratio": "0:1:9000000000"}}),
+    *(("methods", {"over": {}, "methods": "a" * place + "é" * 3000}) for place in range(4)),  # a message that C cuts
 ])
 def test_refused(field, arguments):
     with pytest.raises(springstep.InvalidError) as caught:
