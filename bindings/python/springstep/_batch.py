@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from springstep._common import (Guard, MethodName, SpringError, fail, fail_step, finite, invalid, method_number,
-                                springs_method, step_count)
+                                remade, springs_method, step_count)
 from springstep._native import ffi, lib
 
 F = TypeVar("F", bound=np.floating[Any])
@@ -317,7 +317,7 @@ class Batch(Generic[F]):
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent batches."""
         parameters = (None if values is None else values.copy() for values in self._parameters.values())
-        return Batch, (*self.snapshot(), *parameters)
+        return remade, (type(self), Batch, (*self.snapshot(), *parameters), {}), getattr(self, "__dict__", None)
 
     def __repr__(self) -> str:
         return f"<Batch of {len(self)} springs, {self.dtype}>"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from springstep._common import finite, invalid, step_count
+from springstep._common import finite, invalid, remade, step_count
 from springstep._native import ffi, lib
 
 
@@ -84,10 +84,13 @@ class Clock:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent clocks."""
-        return Clock, (self.dt, self.max_steps), self.snapshot()
+        times = {"pending": self.pending, "dropped": self.dropped, "skipped": self.skipped}
+        return remade, (type(self), Clock, (self.dt, self.max_steps), {}), (times, getattr(self, "__dict__", {}))
 
-    def __setstate__(self, snapshot: tuple[float, float]) -> None:
-        self.restore(snapshot)
+    def __setstate__(self, state: tuple[dict[str, float], dict[str, Any]]) -> None:
+        self._clock = ffi.new("spring_clock *", state[0])
+        for name, value in state[1].items():
+            setattr(self, name, value)
 
     def __repr__(self) -> str:
         return f"Clock(dt={self.dt!r}, max_steps={self.max_steps!r})"

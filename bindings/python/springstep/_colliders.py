@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from springstep._common import invalid
-from springstep._force import InC, function_in_c
+from springstep._force import GivenInC, InC, function_in_c
 from springstep._native import ffi, lib
 
 if TYPE_CHECKING:
@@ -68,6 +68,19 @@ class Collider:
         changed = [field.name for field in fields(self) if repr(getattr(self, field.name)) != repr(field.default)]
         return f"Collider({', '.join(f'{name}={getattr(self, name)!r}' for name in changed)})"
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether all fields are equal, those that are arrays or other sequences by their elements."""
+        if not isinstance(other, Collider):
+            return NotImplemented
+        pairs = ((getattr(self, field.name), getattr(other, field.name)) for field in fields(self))
+        return all(a is b or np.array_equal(a, b) for a, b in pairs)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies share a function in C."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        given = None if self.gap is None else GivenInC(values.pop("gap"), values.pop("gap_data"))
+        return _copied, (type(self), values, given)
+
     def _fill(self, c: Any, axes: int, place: int) -> None:
         """Copy all fields to a structure of C, for a scene with so many axes."""
         if self.shape not in _SHAPES:
@@ -104,15 +117,19 @@ class Collider:
             c.gap, c.user = ffi.cast("spring_gap_fn *", found[0]), ffi.cast("void *", found[1])
 
 
+def _copied(kind: type[Collider], values: dict[str, Any], given: GivenInC | None) -> Collider:
+    return kind(**values) if given is None else kind(**values, gap=given.function, gap_data=given.data)
+
+
 def colliders_from(array: Any, bodies: list[Collider]) -> list[Collider]:
-    """Return colliders from structures of C. bodies: [len(array)] with the functions of custom bodies; [] if there are none."""
+    """Return colliders from structures of C. bodies: with the functions of custom bodies, each at its place."""
     names = {number: name for name, number in _SHAPES.items()}
     found = []
     for place, c in enumerate(array):
         given: dict[str, Any] = {name: tuple(getattr(c, name)) for name in _VECTORS + _SPINS}
         given |= {name: getattr(c, name) for name in (*_NUMBERS, "mask")}
         given |= {"shape": names[c.shape], "axis": tuple(map(tuple, c.axis))}
-        if bodies:
+        if c.shape == lib.SPRING_CUSTOM:
             given |= {"gap": bodies[place].gap, "gap_data": bodies[place].gap_data}
         found.append(Collider(**given))
     return found

@@ -2,11 +2,12 @@
 """Functions that scenes call: forces in Python, and functions in C of numba, SciPy, ctypes and cffi."""
 from __future__ import annotations
 
+import copy
 import ctypes
 import re
 import types
 from collections.abc import Callable
-from typing import Any, Protocol, Union
+from typing import Any, NamedTuple, NoReturn, Protocol, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,12 +101,25 @@ ffi.def_extern("springstep_force", onerror=_callback_raised)(_callback)
 ffi.def_extern("springstep_forcef", onerror=_callback_raised)(_callback)
 
 
+class GivenInC(NamedTuple):
+    """A function in C and its data, for copies. They share the function."""
+
+    function: Any
+    data: NDArray[Any] | None
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> GivenInC:
+        return GivenInC(self.function, copy.deepcopy(self.data, memo))
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a function in C cannot be pickled: make the scene in the other process, and load() its state")
+
+
 class CForce:
     """A function in C, with what must stay alive while it is used."""
 
     error: BaseException | None = None
 
-    def __init__(self, address: int, user: int, dtype: np.dtype[Any], given: tuple[Any, NDArray[Any] | None]) -> None:
+    def __init__(self, address: int, user: int, dtype: np.dtype[Any], given: GivenInC) -> None:
         self.pointer = ffi.cast("spring_scene_force_fn *" if dtype == np.float64 else "spring_scenef_force_fn *", address)
         self.user = ffi.cast("void *", user)
         self.given = given
@@ -188,7 +202,7 @@ def called_force(force: AnyForce, data: NDArray[Any] | None, scene: Any) -> Pyth
     wanted = f"void (void *, double, size_t, {number} **, {number} **, {number} **)"
     found = function_in_c("force", force, data, wanted, _is_force(number))
     if found is not None:
-        return CForce(*found, scene.dtype, (force, data))
+        return CForce(*found, scene.dtype, GivenInC(force, data))
     if not callable(force):
         raise TypeError(f"force: a {type(force).__name__}, neither a function in Python nor one in C")
     if data is not None:

@@ -1110,7 +1110,9 @@ def _pins_in(state: bytes | bytearray | memoryview, held: bool) -> NDArray[np.bo
 def _copied(cls: type[Scene[Any]], shape: tuple[int, int], definition: dict[str, Any], force: tuple[Any, Any],
             state: bytes, bodies: list[Collider]) -> Scene[Any]:
     """Return a copy of a scene."""
-    scene = cls(np.zeros(shape), force=force[0], force_data=force[1], **definition)
+    scene: Scene[Any] = remade(cls, Scene, (np.zeros(shape),), definition)
+    if force[0] is not None:  # after that, since methods of the definition may be unavailable with a force
+        scene.set_force(*force)
     if bodies:  # a state does not have their functions
         scene.set_colliders(bodies)
     scene.load(state)

@@ -2,14 +2,14 @@
 """Simulation of one spring."""
 from __future__ import annotations
 
-import functools
 import math
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from springstep._common import MethodName, fail, fail_step, finite, invalid, method_number, springs_method, step_count
+from springstep._common import (MethodName, fail, fail_step, finite, invalid, method_number, remade, springs_method,
+                                step_count)
 from springstep._native import ffi, lib
 
 
@@ -369,7 +369,7 @@ class Spring:
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent springs."""
         values = self.stiffness, self.mass, self.damping, self.load
-        return functools.partial(Spring, x=self.x, v=self.v), values
+        return remade, (type(self), Spring, values, {"x": self.x, "v": self.v}), getattr(self, "__dict__", None)
 
     def __repr__(self) -> str:
         return (f"Spring(stiffness={self.stiffness!r}, mass={self.mass!r}, damping={self.damping!r}, "

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Forces of scenes, in Python and in C."""
+import copy
 import ctypes
 import gc
 import importlib
 import math
+import pickle
 import subprocess
 import sys
 import sysconfig
@@ -236,6 +238,16 @@ def test_a_force_without_velocities_is_asked_once_a_step(ignores, calls):
     assert len(seen) == calls
 
 
+def test_a_copy_with_a_force_that_was_set_later():
+    """With a method that the definition would not have with this force."""
+    scene = Scene(np.eye(3), methods=["leapfrog", "rkn8"])
+    scene.set_force(lambda t, position, velocity, force: force[1].fill(1))
+    twin = copy.copy(scene)
+    for each in (scene, twin):
+        each.advance(1e-3, 9)
+    assert fnv(twin) == fnv(scene) != fnv(Scene(np.eye(3)))
+
+
 def test_a_force_may_not_ask_its_scene():
     scene = rope()
     scene.set_force(lambda t, position, velocity, force: scene.advance(1e-3))
@@ -360,6 +372,21 @@ def test_a_force_in_c_has_the_bits_of_the_same_force_in_python(made, dtype, libr
     in_c.advance(1e-3, 10)
     in_python.advance(1e-3, 10)
     assert fnv(in_c) == fnv(in_python) != still
+
+
+@IN_C
+def test_copies_share_a_function_in_c(made, library):
+    """A deep copy has data of its own. Such a scene cannot be pickled."""
+    air = np.array([3.0, -0.7, 0.2])
+    scene = rope(force=made(library, np.float64), force_data=air)
+    shared, own = copy.copy(scene), copy.deepcopy(scene)
+    assert own._called.given[0] is scene._called.given[0]
+    air[0] = 5
+    for each in (scene, shared, own):
+        each.advance(1e-3, 50)
+    assert fnv(scene) == fnv(shared) != fnv(own)
+    with pytest.raises(TypeError, match="^a function in C cannot be pickled"):
+        pickle.dumps(scene)
 
 
 def test_user_data_of_scipy(library):

@@ -109,6 +109,37 @@ def test_a_copy_goes_on_alike(copied, dtype):
         assert advanced(scene) == want
 
 
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+def test_copies_of_subclasses(copied):
+    for thing in (OwnScene(), OwnSpring(), OwnBatch(), OwnClock()):
+        twin = copied(thing)
+        assert type(twin) is type(thing) and vars(twin) == {"tag": [1]} and (twin.tag is thing.tag) == (copied is copy.copy)
+
+
+class OwnScene(Scene):
+    def __init__(self):
+        super().__init__([[0, 0, 0]])
+        self.tag = [1]
+
+
+class OwnSpring(springstep.Spring):
+    def __init__(self):
+        super().__init__(2.0, x=1.0)
+        self.tag = [1]
+
+
+class OwnBatch(springstep.Batch):
+    def __init__(self):
+        super().__init__(np.ones(3), np.ones(3), 4.0)
+        self.tag = [1]
+
+
+class OwnClock(springstep.Clock):
+    def __init__(self):
+        super().__init__(0.1)
+        self.tag = [1]
+
+
 def test_a_copy_knows_its_pins():
     torn = next(saved_scenes(np.float64))
     twin = copy.copy(torn)
@@ -929,6 +960,29 @@ def test_what_is_no_surface_is_refused(gap, data, named):
         drop(springstep.custom(gap, 1, gap_data=data))
 
 
+@pytest.mark.parametrize("made", [gap_in_ctypes, gap_in_numba, gap_in_cffi])
+def test_copies_of_custom_bodies(made):
+    body = springstep.custom(made(), 1, gap_data=np.array([0.25]))
+    scene = drop(body)
+    own = copy.deepcopy(body)
+    assert own == body == copy.copy(body) and own.gap is body.gap and own.gap_data is not body.gap_data
+    for twin in (copy.copy(scene), copy.deepcopy(scene)):
+        assert advanced(twin) == advanced(copy.copy(scene)) and twin.get_colliders()[0].gap is body.gap
+    for thing in (body, scene):
+        with pytest.raises(TypeError, match="^a function in C cannot be pickled"):
+            pickle.dumps(thing)
+
+
+def test_a_loaded_state_has_colliders_of_its_own():
+    body, ball = springstep.custom(gap_in_cffi(), 1, gap_data=np.array([0.25])), springstep.sphere([0, 0, -9], 1.0)
+    one, two = drop(body), drop(body, ball)
+    both = two.save()
+    two.load(one.save())
+    one.load(both)
+    assert [c.gap for c in one.get_colliders()] == [body.gap, None] and [c.gap for c in two.get_colliders()] == [body.gap]
+    assert advanced(copy.copy(one)) == advanced(one)
+
+
 def test_impulses_are_those_of_the_weight():
     scene = springstep.Scene([[2.0, 0.0, 0.0]], mass=[0.5], gravity=[0, 0, -10], colliders=2)
     scene.set_colliders([springstep.sphere([0, 0, 9], 1), springstep.plane([0, 0, 0], [0, 0, 1])])
@@ -977,6 +1031,10 @@ def test_colliders_are_values():
     assert again == ball == copy.deepcopy(ball) != springstep.sphere([0, 1, 2], 0.6, spin=[0, 0, 3], friction=0.3)
     assert springstep.capsule([0, 0, 0], [1, 0, 0], 0.1, velocity=[1, 2, 3]).velocity_to == [1, 2, 3]
     assert springstep.Collider("sphere", [0, 1, 2], radius=0.5, spin=[0, 0, 3], friction=0.3) == ball
+    assert springstep.sphere(np.array([0, 1, 2]), 0.5, spin=np.array([0, 0, 3]), friction=0.3) == ball != 3
+    assert springstep.sphere(np.array([0, 1, 3]), 0.5, spin=np.array([0, 0, 3]), friction=0.3) != ball
+    with pytest.raises(springstep.InvalidError, match=r"^colliders.spin\[0\] = \(3, 4\): not a number"):
+        drop(springstep.sphere([0, 0], 1.0, spin=(3, 4)), axes=2)
 
 
 @pytest.mark.parametrize("field, value, shape, more", [
