@@ -12,7 +12,7 @@ from springstep._common import (InvalidError, Method, MethodName, NonFiniteError
                                 UnsupportedError, _text, methods, self_test)
 from springstep._force import Force
 from springstep._links import LINK, TENSION_ONLY, TETHER, WEIGHTED_LINK, Grid, components, grid
-from springstep._mesh import Mesh, bend_grid, bend_mesh, bend_rod, from_mesh, tethers
+from springstep._mesh import Mesh, bend_grid, bend_mesh, bend_rod, from_mesh, renumber, soften, tethers
 from springstep._native import ffi, lib
 from springstep._scene import Energies, Scene, Snapshot
 from springstep._spring import Spring
@@ -24,5 +24,5 @@ __all__ = [
     "Batch", "Clock", "Collider", "Energies", "Force", "Grid", "InvalidError", "LINK", "Mesh", "Method", "MethodName",
     "NonFiniteError", "RangeError", "Scene", "Snapshot", "Spring", "SpringError", "TENSION_ONLY", "TETHER", "UnstableError",
     "UnsupportedError", "WEIGHTED_LINK", "bend_grid", "bend_mesh", "bend_rod", "box", "capsule", "components", "custom", "ffi",
-    "from_mesh", "grid", "lib", "methods", "plane", "self_test", "sphere", "sweep", "tethers",
+    "from_mesh", "grid", "lib", "methods", "plane", "renumber", "self_test", "soften", "sphere", "sweep", "tethers",
 ]

@@ -218,6 +218,60 @@ def tethers(position: ArrayLike, links: ArrayLike, pinned: ArrayLike, *, fractio
                  "links", None, fraction=fraction, slack=slack)
 
 
+def soften(position: ArrayLike, links: ArrayLike, dt: float, *, fraction: float = 0.5, mass: ArrayLike = 1.0,
+           pinned: ArrayLike | None = None, weighted_links: ArrayLike | None = None,
+           **columns: ArrayLike | None) -> NDArray[np.void]:
+    """Return links as an array of LINK, with their stiffness lowered until leapfrog is stable with a time step.
+
+    Parameters
+    ----------
+    position, links, mass, pinned, weighted_links
+        As in `Scene`. Weighted links keep their stiffness.
+    dt : float
+        Time step > 0 [s].
+    fraction : float
+        Fraction of the stable step that `dt` may be, > 0 and <= 1.
+    **columns
+        As in `tethers`.
+    """
+    definition, given = _definition(position, links, pinned, weighted_links, columns, mass)
+    if status := lib.spring_links_soften(definition, dt, fraction, as_c(given["link"])):
+        for field, value, most in (("dt", dt, np.finfo(float).max), ("fraction", fraction, 1)):
+            if not 0 < value <= most:
+                invalid(field, value)
+        fail(status, "weighted_links")
+    return given["link"]
+
+
+def renumber(particles: int, links: ArrayLike,
+             **columns: ArrayLike | None) -> tuple[NDArray[np.void], NDArray[np.uint32], NDArray[np.uint32]]:
+    """Return links as an array of LINK, with particles renumbered and links sorted: an unsorted mesh then runs faster.
+
+    Parameters
+    ----------
+    particles : int
+        Number of particles.
+    links
+        As in `Scene`, with all values.
+    **columns
+        As in `tethers`.
+
+    Returns
+    -------
+    links, order, link_order : ndarray
+        ``position[order]`` and ``names_of_links[link_order]`` sort other arrays in the same way.
+    """
+    array = joined(links, None, **columns)
+    order, link_order = np.empty(natural("particles", particles), np.uint32), np.empty(len(array), np.uint32)
+    if status := lib.spring_links_renumber(
+            len(order), len(array), as_c(array), ffi.from_buffer("uint32_t[]", order),
+            ffi.from_buffer("uint32_t[]", link_order), _work(4 * len(order) + 2 * len(array) + 1)):
+        for row in np.flatnonzero((np.maximum(array["a"], array["b"]) >= len(order)) | (array["a"] == array["b"])).tolist():
+            fail(status, "links", array[row].tolist(), row)
+        fail(status, "particles", particles)
+    return array, order, link_order
+
+
 def from_mesh(position: ArrayLike, triangles: ArrayLike, stiffness: float, damping: float = 0.0, *,
               weld: float | None = 0.0) -> Mesh:
     """Return the particles and links of a triangle mesh for drawing, whose vertices may be split at seams.

@@ -76,7 +76,47 @@ def test_an_attachment_and_flags():
     assert Scene(position, slack).tension(0) == 0
 
 
+def test_weighted_links_are_found_by_the_names_of_their_fields():
+    bend = bend_rod(np.eye(3, 2), 1.0, damping_time=0.5)
+    other = np.zeros(1, [(name, bend.dtype[name]) for name in reversed(bend.dtype.names)])
+    for name in bend.dtype.names:
+        other[name] = bend[name]
+    scene = Scene(np.eye(3), weighted_links=other, editable=True)
+    assert scene.weighted_link(0) == bend[0]
+    other["rest"] = 2
+    scene.set_weighted_links(other)
+    assert scene.weighted_link(0)["rest"] == 2
+    with pytest.raises(ValueError, match="^weighted_links: fields"):
+        Scene(np.eye(3), weighted_links=bend[["rest", "particle"]])
+
+
+def test_links_that_are_soft_enough_and_sorted():
+    g = grid([5, 5], 0.1, 500.0, 0.5)
+    shuffled = np.random.default_rng(2).permutation(25)
+    links, place = g.links.copy(), np.argsort(shuffled)
+    links["a"], links["b"] = place[g.links["a"]], place[g.links["b"]]
+    links, order, link_order = springstep.renumber(25, links)
+    scene = Scene(g.position[shuffled][order], links)
+    assert (np.diff(np.minimum(links["a"], links["b"]).astype(int)) >= 0).all() and scene.at_rest(0, 1e-9)
+    assert sorted(order) == list(range(25)) and sorted(link_order) == list(range(len(links)))
+    pinned, dt = np.arange(25) < 5, 1.5 * scene.stable_step()
+    soft = springstep.soften(scene.position(), links, dt, fraction=0.9, pinned=pinned)
+    assert Scene(scene.position(), soft, pinned=pinned).stable_step() == pytest.approx(dt / 0.9, rel=1e-3)
+    assert (soft["stiffness"] <= links["stiffness"]).all() and (soft["damping"] == 0.5).all() and (links["stiffness"] == 500).all()
+
+
 @pytest.mark.parametrize("call, error, field", [
+    (lambda: bend_grid([3, 3], 0.0, 1.0), springstep.InvalidError, "spacing"),
+    (lambda: bend_rod([0.0, 0.5, 1], 1e308), springstep.InvalidError, "rigidity"),
+    (lambda: bend_grid([3, 3], 1e-3, 1e308), springstep.InvalidError, "rigidity"),
+    (lambda: tethers(np.eye(3), [[0, 1], [0, 9]], [True, False, False], stiffness=1.0), springstep.RangeError, "link.b"),
+    (lambda: tethers(np.eye(3), [[0, 1]], [True, False, False], stiffness=1.0, weighted_links=[((0, 1, 9, 3), (1, 1, -2, 0), 0, 1, 0)]),
+     springstep.RangeError, "weighted_link.particle"),
+    (lambda: springstep.soften(np.eye(3), [[0, 1]], 0.0, stiffness=1.0), springstep.InvalidError, "dt"),
+    (lambda: springstep.soften(np.eye(3), [[0, 1]], 1.0, stiffness=1.0, fraction=2), springstep.InvalidError, "fraction"),
+    (lambda: springstep.soften(np.eye(3), [[0, 1]], 1.0, stiffness=1.0, mass=[1, 0, 1]), springstep.InvalidError, "mass"),
+    (lambda: springstep.renumber(2, [(0, 2, 1, 1, 0)]), springstep.RangeError, "links"),
+    (lambda: springstep.renumber(-1, []), springstep.RangeError, "particles"),
     (lambda: bend_rod([[0, 0, 0]] * 3, 1.0), springstep.InvalidError, "position"),
     (lambda: bend_rod([0.0, 1, np.nan], 1.0), springstep.InvalidError, "position"),
     (lambda: bend_rod([0.0, 1, 2], -1.0), springstep.InvalidError, "rigidity"),
