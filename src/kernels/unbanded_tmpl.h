@@ -307,7 +307,7 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         fill_records(s, x, v, out, 3, damped);
     else
         fill_records(s, x, v, out, 2, damped);
-    if (s->terms == DAMPING_TERM)
+    if (damped && s->terms == DAMPING_TERM)
         quad_damping(s, records, records + quad_size, records + at_force, stride);
     else
         quad_links(s, records, records + quad_size, records + at_force, stride, damped);
