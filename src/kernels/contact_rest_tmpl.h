@@ -189,8 +189,8 @@ SPRING_CONTACT_INLINE real3 body_velocity(const contact_body *b, const body_pose
 }
 
 /* The normal of the surface at x, where it touches, and the velocity of the body there. */
-SPRING_CONTACT_INLINE void surface_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
-                                         real3 *normal, real3 *velocity)
+SPRING_NOINLINE void surface_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
+                                   real3 *normal, real3 *velocity)
 {
     near_lanes at;
     if (b->shape == SPRING_CAPSULE) { /* not in its frame, which begins anew in each step */

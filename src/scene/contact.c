@@ -626,7 +626,7 @@ SPRING_INLINE vector3 frame_velocity(const contact_body *b, const body_pose *pos
 }
 
 /* [m/s] Velocity of the surface relative to the frame, at x. n: in the scene */
-SPRING_INLINE vector3 slip_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
+SPRING_NOINLINE vector3 slip_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
 {
     const bool round = b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE; /* in the axes of the scene */
     vector3 v = tangential(round ? b->surface : direction_out(pose, b->surface), n);
