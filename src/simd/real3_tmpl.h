@@ -32,11 +32,6 @@ SPRING_INLINE real3 times3(real s, real3 a)
     return (real3){s * a.x, s * a.y, s * a.z};
 }
 
-SPRING_INLINE real3 over3(real3 a, real s)
-{
-    return (real3){a.x / s, a.y / s, a.z / s};
-}
-
 SPRING_INLINE real3 plus_scaled3(real3 a, real s, real3 b) /* a + s b */
 {
     return (real3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
