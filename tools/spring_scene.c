@@ -138,7 +138,8 @@ static const cli_option options[] = {
      .help = "continue from a state that --save has written\n"
              "Give the same options of the scene, the same method and the same disturbances. The results are then\n"
              "those of one long run. H and N are further time and steps. Times of disturbances are those of the\n"
-             "scene, with T < start + H, or later with --save. Colliders are those of the state."},
+             "scene, with T < start + H, or later with --save. Colliders are those of the state. With --tear, a\n"
+             "row should be a whole number of steps, and H a whole number of rows."},
     {"hash", CLI_FLAG, .flag = &hash_alone,
      .help = "print only a hash of the final state, 16 hexadecimal digits\n"
              "The hash is FNV-1a with 64 bits, over the doubles of all positions and then of all velocities,\n"
@@ -297,17 +298,13 @@ static void check_box(const double dropped[2])
         cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", dropped[1]);
 }
 
-static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
+/* The drops that begin in intervals before the time `until`. Those after the run do not act. */
+static size_t fall(const preset *r, const preset_settings *s, double until, disturbance *list)
 {
     uint64_t random = seed;
     size_t count = 0;
-    const double end = start_time + length.duration;
-    for (uint64_t i = 0; (double)i / rain < end; i++) {
-        const disturbance drop =
-            disturbances_drop(r, s, (double)i / rain, (double)(i + 1) / rain, disturbance_time, &random);
-        if (drop.start < end)
-            list[count++] = drop;
-    }
+    for (uint64_t i = 0; (double)i / rain < until; i++)
+        list[count++] = disturbances_drop(r, s, (double)i / rain, (double)(i + 1) / rain, disturbance_time, &random);
     return count;
 }
 
@@ -321,11 +318,13 @@ static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
         check_poke(r, poke[i]);
     for (uint64_t i = 0; i < boxes; i++)
         check_box(box[i]);
-    const size_t drops = (size_t)(rain * end) + 2; /* + 1 for a drop that has begun, + 1 for rounding */
+    /* The last step may end later, by a step. That of a damaged state may be negative. */
+    const double until = fmax(0, end + fmax(length.dt, length.duration));
+    const size_t drops = (size_t)(rain * until) + 2; /* + 1 for a drop that has begun, + 1 for rounding */
     disturbance *list = malloc((drops + pokes + 1 + boxes) * sizeof *list);
     if (list == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
-    size_t count = rain > 0 ? fall(r, s, list) : 0;
+    size_t count = rain > 0 ? fall(r, s, until, list) : 0;
     for (uint64_t i = 0; i < pokes; i++)
         list[count++] = (disturbance){poke[i][0], disturbance_time, poke[i][1],       poke[i][2],
                                       poke[i][3], poke[i][4],       DISTURBANCE_ROUND};
@@ -442,8 +441,10 @@ static void prepare_frames(uint64_t count)
     if (folder == NULL)
         cli_fail(CLI_IO, "--frames: cannot read \"%s\": %s; it should be a folder", frames, strerror(errno));
     uint64_t number;
-    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;)
-        if (sscanf(entry->d_name, "frame-%6" SCNu64 ".tsv", &number) == 1 && number >= count)
+    int used = 0; /* characters, if all match */
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL; used = 0)
+        if (sscanf(entry->d_name, "frame-%6" SCNu64 ".tsv%n", &number, &used) == 1 &&
+            used == (int)strlen("frame-000000.tsv") && entry->d_name[used] == 0 && number >= count)
             cli_fail(
                 CLI_IO,
                 "--frames: \"%s/%s\" belongs to a longer run; the folder should be empty or belong to the same run",

@@ -220,11 +220,8 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     const scene_stage kicked = {.v = v1};
     end.stage = &kicked;
     end.contacts = WHOLE_STEP_CONTACTS;
-    bool bounces = false;
-    for (unsigned k = 0; k < s->contacts.setting.count; k++)
-        bounces = bounces || s->contacts.setting.body[k].restitution > 0;
-    end.max_speed = bounces ? SCALAR_MAX : end.max_speed;
-    return (scene_outcome){.finite = move(s, kernels->drift_kick_drift, &end) && (!bounces || damp_bounces(s, v1))};
+    end.max_speed = SCALAR_MAX; /* of the velocities after damp_bounces() */
+    return (scene_outcome){.finite = move(s, kernels->drift_kick_drift, &end) && damp_bounces(s, v1)};
 }
 
 #include "../simd/size_end.h"
