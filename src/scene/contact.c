@@ -1123,11 +1123,11 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         vector3 there = m->start;
         if (b->shape == SPRING_CAPSULE)
             there = add_scaled(there, m->at.along, subtract(b->end.segment, b->start.segment));
-        if (m->at.gap < -m->slop / 2) /* rounding errors of many steps */
-            there = add_scaled(there, -m->at.gap, m->at.normal);
         p->d = b->moves ? subtract(place_out(&b->end, there), p->x0) : zero3;
         p->w = scale(1 / s->h, p->d);
-        clear = m->at.gap > -m->slop / 2;
+        clear = !(m->gap < 0);
+        if (!clear && b->moves)
+            p->d = add_scaled(p->d, -m->gap, m->n_end);
     } else {
         vector3 change = scale(s->h < 0 ? -lambda : lambda, m->n);
         if (mu > 0)
@@ -1591,15 +1591,15 @@ static bool end_at_contact(const contact_setting *s, contact_particle *p, const 
     return true;
 }
 
-/* Moves the path of a particle that starts in the skin of a body out of it. Otherwise the skin divided by h would become a
-   velocity. raised: [m] by which this has moved the path */
+/* Moves the path of a particle that starts in a body by rounding errors, or in its skin, out of it. Otherwise this depth,
+   divided by h, would become a velocity. raised: [m] by which this has moved the path */
 static void leave_skin(const contact_setting *s, contact_particle *p, const meeting *m, vector3 *raised)
 {
-    const vector3 n = direction_out(&m->b->start, m->at.normal);
-    const double missing = -m->at.gap - inner(n, *raised);
-    if (m->fraction > 0 || m->start_depth > 0 || !(m->at.gap < -m->slop) || !(missing > 0))
+    const vector3 n = direction_out(&m->b->start, m->at.normal), x = add(p->x0, p->d);
+    const double missing = -m->gap - inner(n, *raised);
+    if (!(m->gap < 0) || !(missing > 0))
         return;
-    const vector3 x = add(p->x0, p->d), x1 = add_scaled(x, missing, n);
+    const vector3 x1 = add_scaled(x, missing, n);
     *raised = add_scaled(*raised, missing, n);
     p->d = add_scaled(p->d, missing, n);
     spring_contact_record(s, p, m->index, &x, &p->w, &x1, &p->w);

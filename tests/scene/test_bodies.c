@@ -2431,6 +2431,34 @@ static void boxes_on_the_ground(void)
     }
 }
 
+/* The ground moves, and carries a particle by friction: rounding errors of its position are no velocity. */
+static void carried_far_out(void)
+{
+    for (int k = 0; k < 100; k++) {
+        const double far_out = random_log(1, 50), angle = random_uniform(-0.2, 0.2), g[3] = {0, -gravity, 0};
+        const double n[3] = {sin(angle), cos(angle), 0}, x[3] = {far_out, far_out, far_out};
+        const double V[3] = {random_uniform(-1, 1), random_uniform(-1, 1), random_uniform(-1, 1)};
+        spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{n[0], n[1], 0}}, .friction = 0.5}, unit_box};
+        c[1].at[0] = far_out + 3;
+        c[1].at[1] = c[1].at[2] = far_out;
+        for (int i = 0; i < 2; i++)
+            memcpy(c[i].velocity, V, sizeof V);
+        memcpy(c[0].at, x, sizeof x);
+        spring_scene *s = ball_at(x, V, g, 0, 2);
+        set(s, c, k % 2 ? 2 : 1);
+        for (int step = 0; step < 300; step++) {
+            double now[3], v[3];
+            uint32_t touches;
+            run(s, with_contacts[k % method_count], 1. / 960, 1);
+            get(s, now, v);
+            CHECK(spring_scene_touching(s, &touches, 0, 1) == SPRING_OK && touches == 1, "on the ground");
+            for (int a = 0; a < 3; a++)
+                CHECK_BELOW(fabs(v[a] - V[a]), in_double ? 64 * EPS : gravity / 960, "carried, or falling for a step");
+        }
+        free(s);
+    }
+}
+
 /* Two particles on a damped link, with the same velocity v, which changes in a step of 0.01 s with the plane y = 0. */
 static void step_of_pair(const double x[3], double v[3], const double g[3], const spring_collider *c, double dt_G,
                          double impulse[3])
@@ -2851,6 +2879,7 @@ static const test tests[] = {
     {"ball on an edge", ball_on_an_edge},
     {"waiting colliders", waiting_colliders},
     {"boxes on the ground", boxes_on_the_ground},
+    {"carried far out", carried_far_out},
     {"corner of a custom body", corner_of_a_custom_body},
     {"folds", folds},
     {"damped bodies fall", damped_bodies_fall},
