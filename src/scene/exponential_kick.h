@@ -85,10 +85,10 @@ SPRING_NOINLINE bool damp_bounces(const scene_step *s, const scalar *before)
             }
         }
     }
-    for (size_t i = 0; i < s->particles.count; i++)
-        if (wrong_state(&s->particles, &s->whole, i))
-            return false;
-    return true;
+    size_t i = s->whole.max_speed < SCALAR_MAX ? 0 : s->particles.count;
+    while (i < s->particles.count && !wrong_state(&s->particles, &s->whole, i))
+        i++;
+    return i == s->particles.count;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the series */
