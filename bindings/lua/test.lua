@@ -204,6 +204,7 @@ holds("a saved state goes on in another scene", function()
     spring.load(other, state)
     assert(spring.save(other) == state and on(scene) == on(other), "the same bytes")
     refused("load: damaged", spring.load, other, state:sub(1, -2))
+    refused("save: not a scene", spring.save, ffi.cast("void *", scene))
     refused("load: the state of a scene with another definition", spring.load, cloth(name == "spring_scene" and "spring_scenef" or "spring_scene"), state)
   end
 end)

@@ -275,6 +275,13 @@ def test_a_run_can_be_continued(words, tmp_path):
     assert (tmp_path / 'other').read_bytes() == (tmp_path / 'end').read_bytes() != state.read_bytes()
 
 
+def test_rain_falls_until_the_end_of_the_last_step():
+    """51 steps end after H: the raindrops of this time fall, too."""
+    rain = '--scene rope --method rk4 --dt 0.002 --rain 1000 --hash'.split()
+    by_time, by_steps = run(SCENE, *rain, '--duration', '0.1011'), run(SCENE, *rain, '--steps', '51')
+    assert by_time.returncode == by_steps.returncode == 0 and by_time.stdout == by_steps.stdout
+
+
 def test_states_of_other_scenes_are_refused(tmp_path):
     state = tmp_path / 'state'
     short = '--method leapfrog --duration 0.05'
@@ -345,6 +352,13 @@ def test_frames_of_a_longer_run_stay(gone, jelly):
     before = texts(folder)
     is_failure(run(SCENE, *args, '--duration', '0.1'), 3, '/frame-0000', 'longer run')
     assert texts(folder) == before
+
+
+def test_other_files_beside_frames_stay(tmp_path):
+    args = ('--scene', 'rope', '--method', 'leapfrog', '--duration', '0.1', '--frames', tmp_path)
+    for name in ('frame-000300.png', 'frame-9.tsv', 'frame-000300.tsv.gz'):
+        (tmp_path / name).write_text('other')
+    assert run(SCENE, *args).returncode == 0 and (tmp_path / 'frame-9.tsv').read_text() == 'other'
 
 
 @pytest.mark.parametrize('option', ['--output', '--positions'])
