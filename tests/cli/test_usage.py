@@ -130,7 +130,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--scene jelly --size 4000', ['--size', '"4000"', 'more particles or links']),
         *[(SCENE, f'--{name} {value} --dt 1', [f'--{name}', f'"{shown}"', 'should be finite'])
           for name, value, shown in [('mass', '1e-310', '1e-310'), ('stiffness', '1e308', '1e+308'), ('damping', '1e308', '1e+308'),
-                                     ('drag', '1e308', '1e+308'), ('tethers', '1e308', 'inf')]],
+                                     ('drag', '1e308', '1e+308'), ('tethers', '1e308', '1e+308')]],
         *[(SCENE, f'--scene chain {words}', [f'{words.split()[0]}: ', 'not for scenes with one axis', *words.split()[1:]])
           for words in ('--tear 2.5', '--tethers 0.25', '--tension-only')],
         (SCENE, '--fps 1e-320', ['--fps: "9.9', 'step of 0 s']),

@@ -25,7 +25,8 @@ void start_links(preset *r, double bend, double tethers)
     if (status == SPRING_OK && tethers > 0)
         status = preset_tether(r, tethers);
     if (status != SPRING_OK && status != SPRING_ENOMEM)
-        cli_fail(CLI_USAGE, "--tethers: \"%g\": %s", tethers, spring_status_string(status));
+        cli_fail(CLI_USAGE, "--tethers: \"%g\": %s; the stiffness of tethers should be finite", tethers,
+                 spring_status_string(status));
     if (status != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for tethers or weighted links");
 }
