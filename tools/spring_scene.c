@@ -298,7 +298,7 @@ static void check_box(const double dropped[2])
         cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", dropped[1]);
 }
 
-/* The drops that begin in intervals before the time `until`. Those after the run do not act. */
+/* The drops of all intervals that begin before the time `until`. Those that begin after the run do not act. */
 static size_t fall(const preset *r, const preset_settings *s, double until, disturbance *list)
 {
     uint64_t random = seed;
@@ -318,8 +318,8 @@ static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
         check_poke(r, poke[i]);
     for (uint64_t i = 0; i < boxes; i++)
         check_box(box[i]);
-    /* The last step may end later, by a step. That of a damaged state may be negative. */
-    const double until = fmax(0, end + fmax(length.dt, length.duration));
+    /* The last step may end after H, by less than H unless it is the only one. The time of a damaged state may be negative. */
+    const double until = fmax(0, end + length.duration);
     const size_t drops = (size_t)(rain * until) + 2; /* + 1 for a drop that has begun, + 1 for rounding */
     disturbance *list = malloc((drops + pokes + 1 + boxes) * sizeof *list);
     if (list == NULL)
