@@ -400,7 +400,8 @@ double spring_contact_motion(const contact_body *b)
     return b->shape == SPRING_CAPSULE ? motion + length3(subtract(start->along, end->along)) : motion;
 }
 
-/* [m] The size of numbers that its distances are computed from. The function of a custom body computes in double. */
+/* [m] The size of numbers that its distances are computed from, with this rounding error. The function of a custom body
+   computes in double, so its thickness counts less in single precision. */
 static double rounding_scale_at(const contact_body *b, const body_pose *pose, double epsilon)
 {
     double size = size_sum(pose->at) + b->radius + size_sum(pose->segment) +
@@ -1126,7 +1127,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         p->d = b->moves ? subtract(place_out(&b->end, there), p->x0) : zero3;
         p->w = scale(1 / s->h, p->d);
         clear = !(m->gap < 0);
-        if (!clear && b->moves)
+        if (!clear && b->moves) /* rounding errors of many steps, and the skin, do not enter the velocity */
             p->d = add_scaled(p->d, -m->gap, m->n_end);
     } else {
         vector3 change = scale(s->h < 0 ? -lambda : lambda, m->n);
