@@ -339,7 +339,7 @@ class Scene(Generic[F]):
         return count
 
     def _set_rows(self, name: str, kind: str, field: str, array: NDArray[Any], first: int) -> None:
-        """Change consecutive things by a function of C. An error names the first value that it refuses."""
+        """Change consecutive masses or links by a function of C. An error names the first value that it refuses."""
         first, pointer = natural("first", first), ffi.cast(kind, ffi.from_buffer(array))
         status = self._ask(name, first, len(array), pointer)
         if status == lib.SPRING_EINVAL:
