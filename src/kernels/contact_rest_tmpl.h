@@ -732,26 +732,58 @@ static lane_bits stop_on_collider(candidate_chunk *r, const picked_particles *l,
     return bits_where(fine, RESTS_DONE | RESTS_TOUCHING);
 }
 
-/* Particles that touch collider c at the start of the step and press on it: see presses(). */
+/* [m/s] The changes of the velocity of a body under particles at x with the velocity v: in the step, and until its middle. */
+SPRING_NOINLINE void velocity_changes(const contact_body *b, scalar h, const real3 *x, const real3 *v, real3 *in_step,
+                                      real3 *until_middle)
+{
+    const real3 middle = plus_scaled3(*x, splat(h / 2), *v);
+    const real3 carried =
+        plus3(splat_vector(b->end.at), direction_out_lanes(b, &b->end, place_in_lanes(b, &b->start, *x)));
+    const real3 place[] = {*x, middle, middle, carried};
+    real3 at[4];
+    SPRING_ROLLED
+    for (int i = 0; i < 4; i++)
+        at[i] = body_velocity(b, i < 2 ? &b->start : &b->end, splat(0), place[i]);
+    *in_step = minus3(at[3], at[0]);
+    *until_middle = minus3(plus_scaled3(at[1], splat((scalar)0.5), minus3(at[2], at[1])), at[0]);
+}
+
+/* Particles that touch collider c at the start of the step and press on it: see presses(). They should neither leave it nor
+   slide at the end of the step. Contacts that are computed after the kick have impacts. */
 static lane_bits pressing_on_collider(candidate_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->step;
-    const size_t first = r->first;
-    const real3 x = pick3_rarely(l, r->place, p->stride, 1, p->axes),
-                v = pick3_rarely(l, m->v0 + first, p->stride, 1, p->axes),
-                residual = pick3_rarely(l, m->v + first, p->stride, 1, p->axes);
+    const size_t first = r->first, stride = p->stride;
+    const scalar h = (scalar)r->setting->h;
+    const real3 x = pick3_rarely(l, r->place, stride, 1, p->axes),
+                v = pick3_rarely(l, m->v0 + first, stride, 1, p->axes),
+                residual = pick3_rarely(l, m->v + first, stride, 1, p->axes);
     real radius, friction;
     pick_surface(r, l, &radius, &friction);
-    real3 normal, velocity;
+    real3 normal, velocity, in_step = zero_lanes(), until_middle = in_step;
     surface_lanes(b, &b->start, &x, &radius, &normal, &velocity);
     const real3 u = minus3(v, velocity);
-    const real load = -(scalar)r->setting->h * dot3(residual, normal), leaving = dot3(u, normal);
+    const real load = -h * dot3(residual, normal), leaving = dot3(u, normal);
     const real rounding = 64 * SCALAR_EPSILON * (sum_of_sizes(v) + sum_of_sizes(velocity));
     const lane_mask presses = l->where & (load > 0) & ((leaving <= rounding) | (leaving <= r->returning * load));
-    put3(l, &presses, &normal, r->change, contact_chunk, 3);
-    put3(l, &presses, &u, r->change + 3 * contact_chunk, contact_chunk, 3);
+    if (!any(presses))
+        return bits_where(l->where, RESTS_DONE);
+    if (b->moves)
+        velocity_changes(b, h, &x, &v, &in_step, &until_middle);
+    const real3 wanted = plus_scaled3(minus3(in_step, u), select_real(leaving < 0, leaving, splat(0)), normal);
+    const real change = dot3(wanted, normal);
+    const real3 slip = minus3(u, until_middle);
+    /* as in pressed_value */
+    const real3 value[] = {{splat((scalar)FREE_IN_PLANE), splat((scalar)c), (scalar)b->friction * friction},
+                           normal,
+                           normal,
+                           times3(change / h, normal),
+                           plus_scaled3(wanted, -change, normal),
+                           plus_scaled3(slip, -dot3(slip, normal), normal)};
+    for (size_t i = 0; i < sizeof value / sizeof value[0]; i++)
+        put3(l, &presses, &value[i], r->pressed + 3 * i * stride + first, stride, 3);
     return bits_where(l->where, RESTS_DONE) | bits_where(presses, RESTS_PRESSED);
 }
 

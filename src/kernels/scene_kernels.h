@@ -256,7 +256,8 @@ typedef struct candidate_chunk {
     uint8_t list[contact_chunk + 1];   /* their places in the chunk, ascending */
     uint32_t candidate[contact_chunk]; /* bits of the colliders that the particle may touch */
     uint32_t done[contact_chunk];      /* bits of rest_result */
-    scalar *change; /* [3][contact_chunk], written: [m/s] by the contact; [6][contact_chunk] for find_pressing */
+    scalar *change;                    /* [3][contact_chunk], written: [m/s] by the contact */
+    scalar *pressed;                   /* ARRAY_PRESSED, written by find_pressing */
 } candidate_chunk;
 
 /* Sets `candidate`, `list`, `nearby` and `way` for the motion from kept.x0 to x, for free particles. Returns whether
@@ -267,9 +268,27 @@ typedef bool near_kernel(candidate_chunk *);
    completes a kick: it writes v and change. move_resting completes motions of particles that rest or slide: it writes x,
    v, predicted and change. For WHOLE_STEP_CONTACTS it also replaces kept.x0 by x of the motion without contacts.
    find_pressing finds particles that press on their collider at the start of a step, where v of the step is their
-   residual. It adds no impulses, and writes their normals and then their velocities relative to the surface to
-   change. */
+   residual. It adds no impulses, and writes the first values of these particles to `pressed`. */
 typedef void rest_kernel(candidate_chunk *);
+
+/* Friction of pressed particles differs from its limit by at most this part of it, unless all passes are used. */
+static const double friction_tolerance = 0.001;
+
+/* Particles that colliders press during an exponential kick: see scene/pressed.h and pressed_tmpl.h. */
+typedef struct pressed_kick {
+    const scene_particles *particles;
+    scalar *value;         /* ARRAY_PRESSED */
+    scalar h;              /* [s] the time step */
+    const scalar *v0;      /* [m/s] at the start of the step */
+    scalar *residual;      /* [m/s^2] */
+    const scalar *damping; /* [N] for begin_friction: damping forces in the residual; NULL: not computed yet */
+    scalar *term;          /* a term of the series, at last [m/s] the velocity after the kick */
+    const scalar *from;    /* for project_pressed */
+    scalar given_weight;
+    scalar *friction; /* for restore_loads, written: factor of friction after the kick */
+} pressed_kick;
+
+typedef bool pressed_kernel(const pressed_kick *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct common_kernels {
@@ -299,6 +318,7 @@ typedef struct common_kernels {
     keep_kernel *keep_motion;             /* see above */
     near_kernel *find_near;
     rest_kernel *stop_resting, *move_resting, *find_pressing;
+    pressed_kernel *press_hold, *press_project, *press_free, *press_slide, *press_restore;
 } common_kernels;
 
 /* All kernels of a vector width. Besides `common`, they are compiled for vectors of 64 bytes as well, because they gain

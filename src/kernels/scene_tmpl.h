@@ -17,8 +17,8 @@
 #include "leapfrog_particles_tmpl.h"
 
 #if SPRING_VECTOR < 64
-#include "contact_rest_tmpl.h"
 #include "particles_tmpl.h"
+#include "pressed_tmpl.h"
 #include "stretch_tmpl.h"
 #include "unbanded_tmpl.h"
 
@@ -46,6 +46,11 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .stop_resting = stop_touching,
     .move_resting = advance_resting,
     .find_pressing = detect_pressing,
+    .press_hold = begin_friction,
+    .press_project = project_pressed,
+    .press_free = free_pulled,
+    .press_slide = change_friction,
+    .press_restore = restore_loads,
 };
 #endif
 

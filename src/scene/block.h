@@ -17,28 +17,6 @@ typedef struct tether {
     scalar stiffness, damping;
 } tether;
 
-/* In which directions a pressed particle is free. */
-typedef enum freedom { FREE_IN_PLANE, FREE_ALONG_LINE, HELD } freedom;
-
-/* A particle that colliders press during an exponential kick: see pressed.h. */
-typedef struct pressed_particle {
-    uint32_t particle;
-    freedom freedom;
-    scalar line[3];     /* unit vector: the normal, or the line along which the particle is free */
-    scalar outwards[3]; /* sum of the normals */
-    unsigned collider;  /* the first one that it presses on */
-    scalar given[3];    /* [m/s^2] acceleration in the directions in which it is not free */
-    scalar removed[3];  /* [m/s] change of velocity by colliders in the kick; [m/s^2] before its last term */
-    scalar taken[3];    /* [m/s^2] what was taken from its residual before the kick */
-    double coefficient; /* of friction, if it presses on one surface; else 0 */
-    scalar wanted[3];   /* [m/s] change of its velocity along the surface with which it does not slide at the end */
-    scalar slip[3];    /* [m/s] velocity along the surface in the middle of the step, if its velocity does not change */
-    scalar against[3]; /* unit vector: the direction of friction, if it slides */
-    scalar friction;   /* [m/s] change of its velocity by friction */
-    double most_friction; /* [m/s] a larger one would reverse its motion */
-    bool reversed;        /* friction has pushed it after a kick */
-} pressed_particle;
-
 /* The forces that a step keeps for the next step, in the force array of the buffer that holds the state. Only steps
    write the array and set this value; scene_drop_forces() clears it when something changes on which forces depend. */
 typedef enum cached_force {

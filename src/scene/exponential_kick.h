@@ -113,16 +113,17 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
 }
 
 /* v1 = v0 + span p(hZ) r, at positions x and with the residual r in kick_storage(s, 0); and x1 = x + h/2 v1 unless x1
-   is NULL. Returns false if a result is not finite, or faster than max_speed. */
-static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed, const scalar *x, scalar span,
-                                      scalar *v1, scalar *x1, scalar max_speed)
+   is NULL. pressed: NULL: no particles are. Returns false if a result is not finite, or faster than max_speed. */
+static inline bool kick_exponentially(scene_step *s, pressed_kick *pressed, const scalar *x, scalar span, scalar *v1,
+                                      scalar *x1, scalar max_speed)
 {
     const common_kernels *const kernels = s->kernels->common;
     const damping_series *const p = &s->damping;
     scalar *const residual = kick_storage(s, 0), *const storage[] = {kick_storage(s, 1), kick_storage(s, 2)};
     scene_links links = *s->links;
-    for (size_t j = 0; j < pressed->count; j++)
-        memcpy(pressed->list[j].removed, pressed->list[j].taken, sizeof pressed->list[j].removed);
+    if (pressed != NULL)
+        memcpy(pressed_component(s, PRESSED_REMOVED, 0, 0), pressed_component(s, PRESSED_TAKEN, 0, 0),
+               3 * s->particles.stride * sizeof(scalar));
     links.terms = DAMPING_TERM;
     scene_series term = {.residual = residual, .before = residual, .second_before = residual, .h = s->h};
     scene_motion m = s->whole;
@@ -160,7 +161,12 @@ static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed
         if (!damping_term(s, &links, x, term.before, k > 0 ? kernels->series_term : kernels->last_series_term, &m))
             return false;
         const scalar of_given = term.coefficient + term.before_weight * given[0] - term.second_weight * given[1];
-        project_pressed(s, pressed, k > 0 ? NULL : m.v0, k > 0 ? of_given : span * of_given, m.v);
+        if (pressed != NULL) {
+            pressed->term = m.v;
+            pressed->from = k > 0 ? NULL : m.v0;
+            pressed->given_weight = k > 0 ? of_given : span * of_given;
+            kernels->press_project(pressed);
+        }
         given[1] = first ? 1 : given[0];
         given[0] = of_given;
         term.second_before = first ? residual : term.before;
@@ -184,7 +190,8 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     residual.v = kick_storage(s, 0);
     residual.force = end.force = s->forces.force;
     scalar *const v1 = collides ? kick_storage(s, 1) : s->whole.v;
-    pressed_list pressed;
+    pressed_kick pressed;
+    bool presses;
     if (predicts) {
         const size_t bytes = s->scene->layout.axes * s->scene->layout.stride * sizeof(scalar);
         scalar *const of_links = force_at(s, 1 - s->to), *const predicted = kick_storage(s, 1);
@@ -195,8 +202,8 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
         call_back(s->scene, drift.x, s->whole.v0, time_at(s, 0.5), s->forces.force);
         if (!move(s, kernels->residual, &residual))
             return failed;
-        pressed = find_pressed(s, drift.x, residual.v);
-        if (!kick_exponentially(s, &pressed, drift.x, s->h / 2, predicted, NULL, SCALAR_MAX))
+        presses = find_pressed(s, drift.x, residual.v, &pressed);
+        if (!kick_exponentially(s, presses ? &pressed : NULL, drift.x, s->h / 2, predicted, NULL, SCALAR_MAX))
             return failed;
         memcpy(s->forces.force, of_links, bytes);
         call_back(s->scene, drift.x, predicted, time_at(s, 0.5), s->forces.force);
@@ -205,18 +212,19 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     } else if (!move_evaluate_move(s, kernels->drift, &drift, s->whole.v0, 0.5, kernels->residual, &residual)) {
         return failed;
     }
-    pressed = find_pressed(s, drift.x, residual.v);
+    presses = find_pressed(s, drift.x, residual.v, &pressed);
     if (!collides)
         return (scene_outcome){.finite =
-                                   kick_exponentially(s, &pressed, drift.x, s->h, v1, s->whole.x, s->whole.max_speed)};
+                                   kick_exponentially(s, NULL, drift.x, s->h, v1, s->whole.x, s->whole.max_speed)};
     int passes = 0; /* that have changed friction */
     do {
-        if (!kick_exponentially(s, &pressed, drift.x, s->h, v1, NULL, SCALAR_MAX))
+        if (!kick_exponentially(s, presses ? &pressed : NULL, drift.x, s->h, v1, NULL, SCALAR_MAX))
             return failed;
-    } while (free_pulled(s, &pressed, residual.v) ||
-             (passes++ < kick_friction_passes && change_friction(s, &pressed, v1, residual.v)));
-    if (pressed.count > 0)
-        restore_loads(s, &pressed, drift.x, v1);
+        pressed.term = v1;
+    } while (presses &&
+             (kernels->press_free(&pressed) || (passes++ < kick_friction_passes && kernels->press_slide(&pressed))));
+    if (presses)
+        end_pressed(s, &pressed, drift.x, v1);
     const scene_stage kicked = {.v = v1};
     end.stage = &kicked;
     end.contacts = WHOLE_STEP_CONTACTS;

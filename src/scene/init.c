@@ -22,7 +22,6 @@ static const element_sizes sizes = {
     .block = sizeof(spring_scene),
     .tether_link = sizeof(tether),
     .weighted = sizeof(stored_weighted),
-    .pressed = sizeof(pressed_particle),
     .bounds_head = offsetof(collider_bounds, each),
     .bound = sizeof(collider_bound),
 };

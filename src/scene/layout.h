@@ -48,7 +48,7 @@ typedef enum scene_array {
     ARRAY_ROOTS,   /* unbanded_links.root, for bands too, by slot like ARRAY_SLOTS */
     ARRAY_FROZEN,  /* direction_scale, then turning, likewise */
     ARRAY_KICK,    /* see kick_storage() */
-    ARRAY_PRESSED, /* pressed_particle: see exponential_kick.h */
+    ARRAY_PRESSED, /* by particle: the values of pressed_value */
     ARRAY_SUMS,    /* by particle: work space of the stable step and of spring_scene_find_roots() */
     ARRAY_HELD,    /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COLLIDERS, /* spring_collider, as set */
@@ -64,6 +64,28 @@ typedef enum scene_array {
     ARRAY_TOUCHED_1,
     ARRAY_COUNT
 } scene_array;
+
+/* The directions in which a particle may move that colliders press during an exponential kick: see pressed.h. */
+typedef enum freedom { NOT_PRESSED, HELD, FREE_ALONG_LINE, FREE_IN_PLANE } freedom;
+
+/* What is stored of each particle in ARRAY_PRESSED: `stride` numbers of each value, and of each component of a vector. */
+typedef enum pressed_value {
+    PRESSED_FREEDOM,
+    PRESSED_COLLIDER,      /* the first one that it presses on */
+    PRESSED_COEFFICIENT,   /* of friction, if it presses on one surface; else 0 */
+    PRESSED_LINE,          /* unit vector: the normal, or the line along which the particle is free */
+    PRESSED_OUTWARDS = 6,  /* sum of the normals */
+    PRESSED_GIVEN = 9,     /* [m/s^2] acceleration in the directions in which it is not free */
+    PRESSED_WANTED = 12,   /* [m/s] change of its velocity along the surface with which it does not slide at the end */
+    PRESSED_SLIP = 15,     /* [m/s] velocity along the surface in the middle of the step, if it does not change */
+    PRESSED_AGAINST = 18,  /* unit vector: the direction of friction, if it slides */
+    PRESSED_FRICTION = 21, /* [m/s] change of its velocity by friction */
+    PRESSED_REVERSED,      /* 1: friction has pushed it after a kick */
+    PRESSED_MOST_FRICTION, /* [m/s] a larger one would reverse its motion */
+    PRESSED_REMOVED = 24,  /* [m/s] change of velocity by colliders in the kick; [m/s^2] before its last term */
+    PRESSED_TAKEN = 27,    /* [m/s^2] what was taken from its residual before the kick */
+    pressed_values = 30
+} pressed_value;
 
 /* What a band consists of. Bands of tethers are found after those of other links, and bands of three-point links last,
    so that the former do not change how the latter are added up. */
@@ -81,8 +103,8 @@ typedef struct band_layout {
 
 /* [bytes] of elements that depend on the precision */
 typedef struct element_sizes {
-    size_t number, block, tether_link, weighted, pressed; /* block: struct spring_scene */
-    size_t bounds_head, bound; /* a collider_bounds without colliders, and a collider_bound */
+    size_t number, block, tether_link, weighted; /* block: struct spring_scene */
+    size_t bounds_head, bound;                   /* a collider_bounds without colliders, and a collider_bound */
 } element_sizes;
 
 typedef struct scene_layout {

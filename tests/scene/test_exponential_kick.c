@@ -718,7 +718,7 @@ static void slides_down_a_slope(void)
 }
 
 /* A block that is pushed along a plane stops after u^2/(2 mu g), and friction is mu times the load in each step to
-   friction_tolerance (pressed.h), however stiff the dampers. */
+   friction_tolerance, however stiff the dampers. */
 static void stops_by_friction(void)
 {
     static model m;
