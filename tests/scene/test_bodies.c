@@ -1091,6 +1091,138 @@ static void coupled_blocks(void)
     CHECK(block_speed_ratio(4) > 0.5, "vibrates on");
 }
 
+/* A ball that is a collider and may turn. */
+typedef struct turning_ball {
+    double mass, inertia, radius, friction;
+    double at[3], v[3], accel[3], spin[3], spin_accel[3];
+    double before[2][3]; /* linear and angular impulse of the call before */
+    int calls;
+} turning_ball;
+
+/* A call of the loop of docs/games.md. `other`: the acceleration of the ball by gravity */
+static void push_ball(spring_scene *s, turning_ball *b, const double other[3], double T, uint64_t steps)
+{
+    spring_collider c = {.shape = SPRING_SPHERE, .radius = b->radius, .friction = b->friction};
+    spring_impulse j;
+    double pushed[3], correction[3];
+    memcpy(c.at, b->at, sizeof c.at);
+    memcpy(c.velocity, b->v, sizeof c.velocity);
+    memcpy(c.acceleration, b->calls > 0 ? b->accel : other, sizeof c.acceleration);
+    memcpy(c.spin, b->spin, sizeof c.spin);
+    memcpy(c.spin_acceleration, b->spin_accel, sizeof c.spin_acceleration);
+    set(s, &c, 1);
+    run(s, SPRING_LEAPFROG, T / (double)steps, steps);
+    spring_scene_impulses(s, &j, 0, 1);
+    for (int a = 0; a < 3; a++)
+        pushed[a] = c.acceleration[a] - other[a];
+    cross(b->v, pushed, correction);
+    for (int a = 0; a < 3; a++) {
+        const double linear = j.linear[a], angular = j.angular[a] + b->mass * T * T / 2 * correction[a];
+        const double of[2] = {b->calls > 0 ? b->before[0][a] : linear, b->calls > 0 ? b->before[1][a] : angular};
+        b->at[a] += T * b->v[a] + T * T / 2 * c.acceleration[a];
+        b->v[a] += linear / b->mass + other[a] * T;
+        b->spin[a] += angular / b->inertia;
+        b->accel[a] = other[a] + (3 * linear - of[0]) / (2 * T * b->mass);
+        b->spin_accel[a] = (3 * angular - of[1]) / (2 * T * b->inertia);
+        b->before[0][a] = linear;
+        b->before[1][a] = angular;
+    }
+    b->calls++;
+}
+
+/* Without gravity and friction, a ball hits a soft block beside its centre. */
+static void coupled_momenta(void)
+{
+    const spring_grid g = {.count = {4, 4, 4},
+                           .spacing = 0.1,
+                           .stiffness = 100,
+                           .damping = 0.14,
+                           .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND};
+    const double none[3] = {0};
+    static model m;
+    size_t particles, links;
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && links <= most_links, "room for the links");
+    spring_grid_fill(&g, m.position, NULL, m.link);
+    m.def = (spring_scene_def){.particles = particles,
+                               .links = links,
+                               .axes = 3,
+                               .position = m.position,
+                               .link = m.link,
+                               .mass_all = 0.02,
+                               .particle_radius = 0.05,
+                               .colliders = 1};
+    for (int i = 0; i < 2; i++) {
+        const double T = i == 0 ? 1. / 60 : 1. / 240;
+        spring_scene *s = scene_of(&m.def);
+        turning_ball b = {.mass = 5, .inertia = 0.18, .radius = 0.3, .at = {-0.3, 0.75, 0.15}, .v = {2, -1, 0}};
+        double change[3] = {0}, moment[3], end[3], size;
+        const momenta first = momenta_of(&m, s);
+        cross(b.at, b.v, moment);
+        for (double t = 0; t < 1; t += T)
+            push_ball(s, &b, none, T, i == 0 ? 4 : 1);
+        const momenta last = momenta_of(&m, s);
+        cross(b.at, b.v, end);
+        size = b.mass * sqrt(dot(moment, moment));
+        for (int a = 0; a < 3; a++)
+            change[a] = last.angular[a] - first.angular[a] + b.mass * (end[a] - moment[a]) + b.inertia * b.spin[a];
+        CHECK_BELOW(sqrt(dot(change, change)), (in_double ? 1e-11 : 1e-4) * size, "angular momentum is conserved");
+        CHECK_BELOW(sqrt(dot(b.spin, b.spin)), i == 0 ? 0.02 : 0.005, "a ball without friction does not turn");
+        free(s);
+    }
+}
+
+/* A ball with friction lands on a trampoline, and rolls and bounces until it lies in one of its cells. */
+static void coupled_rolling(void)
+{
+    enum { side = 15 };
+    const double spacing = 0.14, k = 2000, mass = 0.02, down[3] = {0, -gravity, 0};
+    const spring_grid g = {.count = {side, side},
+                           .spacing = spacing,
+                           .stiffness = k,
+                           .damping = 0.02 * sqrt(2 * k * mass),
+                           .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                           .pinned =
+                               SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
+    double x[3 * side * side];
+    uint8_t pinned[side * side];
+    spring_link link[4 * side * side];
+    size_t particles, links;
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && links <= 4 * side * side, "room for the links");
+    spring_grid_fill(&g, x, pinned, link);
+    for (size_t i = 0; i < particles; i++) {
+        x[3 * i] -= spacing * (side - 1) / 2;
+        x[3 * i + 2] = x[3 * i + 1] - spacing * (side - 1) / 2;
+        x[3 * i + 1] = 0;
+    }
+    const spring_scene_def def = {.particles = particles,
+                                  .links = links,
+                                  .position = x,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .mass_all = mass,
+                                  .gravity = {0, -gravity, 0},
+                                  .drag = mass,
+                                  .particle_radius = 0.05,
+                                  .colliders = 1};
+    spring_scene *s = scene_of(&def);
+    turning_ball b = {
+        .mass = 5, .inertia = 0.045, .radius = 0.15, .friction = 0.5, .at = {0, 0.3, 0}, .v = {0.5, 0, 0.2}};
+    const double T = 0.02 * sqrt(0.13); /* it sinks by 0.13 m */
+    const uint64_t steps = (uint64_t)ceil(T / (0.5 * spring_scene_stable_step(s, SPRING_LEAPFROG)));
+    double energy[5];
+    for (int i = 0; i <= 4000; i++) {
+        const spring_scene_energies e = spring_scene_energy(s);
+        energy[i / 1000] = e.kinetic + e.elastic + e.gravity + b.mass * (dot(b.v, b.v) / 2 + gravity * b.at[1]) +
+                           b.inertia * dot(b.spin, b.spin) / 2;
+        push_ball(s, &b, down, T, steps);
+    }
+    printf("# a ball on a trampoline: energy %.2f, %.2f, %.2f, %.2f J\n", energy[0], energy[1], energy[2], energy[3]);
+    for (int i = 0; i < 3; i++)
+        CHECK(energy[i + 1] < energy[i], "the coupling adds no energy");
+    CHECK_BELOW(hypot(b.at[0], b.at[2]), spacing * (side - 1) / 2, "on the trampoline");
+    free(s);
+}
+
 enum { most_rope = 12 };
 
 typedef struct attached_body {
@@ -1098,9 +1230,10 @@ typedef struct attached_body {
     double T, omega_T; /* [stable steps] of an update; of the body on the last link */
     double damping;    /* ratio */
     uint64_t steps;    /* per update */
+    bool pushed;       /* it moves as a body that is a collider, too */
 } attached_body;
 
-/* A rigid body that stretches a rope along it, by pull_body() of docs/games.md, is pushed out of balance. Returns its
+/* A rigid body that stretches a rope along it, by pull_body() of docs/games.md, is displaced from balance. Returns its
    largest distance from balance after 400 of 12 000 updates, relative to that in the first 400. */
 static double attached_amplitude(const attached_body *b)
 {
@@ -1122,11 +1255,13 @@ static double attached_amplitude(const attached_body *b)
                  M = k / (omega * omega);
     double end[3] = {x[3 * last]}, v = 1e-3 * omega * spacing;
     for (int i = 0; i < 12000 && late <= 10 * early; i++) {
-        v += T * (load - pull) / M;
-        end[0] += T * v;
+        const double kick = T * (load - pull) / M;
+        v += b->pushed ? 0 : kick;
+        end[0] += T * (v + (b->pushed ? kick / 2 : 0));
         CHECK(spring_scene_drive(s, last, end, T) == SPRING_OK, "a pinned particle");
         run(s, SPRING_LEAPFROG, T / (double)b->steps, b->steps);
         pull = spring_scene_tension(s, last - 1);
+        v += b->pushed ? (kick + T * (load - pull) / M) / 2 : 0;
         double *const largest = i < 400 ? &early : &late;
         *largest = fmax(*largest, fabs(end[0] - x[3 * last]));
     }
@@ -1143,7 +1278,8 @@ static void attached_bodies(void)
                            .T = random_uniform(1, 2),
                            .omega_T = 0.25,
                            .damping = 0.01,
-                           .steps = 3 + (uint64_t)random_uniform(0, 6)};
+                           .steps = 3 + (uint64_t)random_uniform(0, 6),
+                           .pushed = i % 2 == 1};
         damped = fmax(damped, attached_amplitude(&b));
         b.damping = 0;
         b.omega_T = 0.1;
@@ -1152,7 +1288,8 @@ static void attached_bodies(void)
     printf("# amplitude multiplied by up to %.3f with damping, and %.3f without\n", damped, undamped);
     CHECK_BELOW(damped, 1, "the coupling adds no energy");
     CHECK_BELOW(undamped, 1.2, "without damping, vibrations beat");
-    CHECK(attached_amplitude(&(attached_body){4, 3, 0.25, 0, 8}) > 10, "with longer updates, a vibration resonates");
+    CHECK(attached_amplitude(&(attached_body){4, 3, 0.25, 0, 8, false}) > 10,
+          "with longer updates, a vibration resonates");
 }
 
 /* Two particles joined by a damped link rest on a plane, one above the other. docs/details.md has the excess of RK4. */
@@ -2901,6 +3038,8 @@ static const test tests[] = {
     {"coupled oscillation", coupled_oscillation},
     {"coupled columns", coupled_columns},
     {"coupled blocks", coupled_blocks},
+    {"coupled momenta", coupled_momenta},
+    {"coupled rolling", coupled_rolling},
     {"attached bodies", attached_bodies},
     {"a damped link at rest", damped_link_at_rest},
     {"radius, friction and mask", values_of_particles},
