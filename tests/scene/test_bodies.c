@@ -1,85 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Colliders as bodies: rigid motion, static friction on them, friction across reversals, grooves, impulses, masks, radii,
    and bodies of any form. */
-#include "test_scene.h"
+#include "test_contact.h"
 
 #include <stdio.h>
 
-#define PI 3.14159265358979323846
-
-static const double gravity = 9.81, frame = 1. / 60;
-
-enum { in_double = sizeof(scalar) == sizeof(double) };
+static const double frame = 1. / 60;
 
 static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4};
 enum { method_count = 2 };
-
-static const spring_collider unit_box = {
-    .shape = SPRING_BOX, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .half = {2, 0.1, 2}};
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double length(const double a[3])
-{
-    return sqrt(dot(a, a));
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-/* a turned by the vector phi (Rodrigues). */
-static void turn(const double phi[3], const double a[3], double out[3])
-{
-    const double angle = length(phi);
-    double n[3] = {0}, c[3];
-    for (int i = 0; i < 3 && angle > 0; i++)
-        n[i] = phi[i] / angle;
-    cross(n, a, c);
-    for (int i = 0; i < 3; i++)
-        out[i] =
-            angle > 0 ? cos(angle) * a[i] + sin(angle) * c[i] + 2 * pow(sin(angle / 2), 2) * dot(n, a) * n[i] : a[i];
-}
-
-/* One free particle of 0.7 kg. */
-static spring_scene *ball_at(const double x[3], const double v[3], const double g[3], double radius, uint32_t colliders)
-{
-    spring_scene_def def = {.particles = 1,
-                            .position = x,
-                            .velocity = v,
-                            .mass_all = 0.7,
-                            .colliders = colliders,
-                            .particle_radius = (scalar)radius,
-                            .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
-    memcpy(def.gravity, g, sizeof def.gravity);
-    return scene_of(&def);
-}
-
-static spring_scene *particle_at(const double x[3], const double v[3], const double g[3], uint32_t colliders)
-{
-    return ball_at(x, v, g, 0, colliders);
-}
-
-static void get(const spring_scene *s, double x[3], double v[3])
-{
-    spring_scene_get(s, SPRING_POSITION, x, 0, 0, 1);
-    spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
-}
-
-static void set(spring_scene *s, const spring_collider *c, uint32_t count)
-{
-    CHECK(spring_scene_set_colliders(s, c, count) == SPRING_OK, "valid colliders");
-}
-
-static void run(spring_scene *s, spring_method m, double dt, uint64_t n)
-{
-    CHECK(spring_scene_advance(s, m, dt, n) == SPRING_OK, "finite");
-}
 
 /* ----------------------------------------------------------------------------------------------------- rigid motion */
 
@@ -103,7 +32,7 @@ static hit bat(spring_method m, double omega, double b, double e, double dt, int
     for (int i = 0; i < steps; i++) {
         const double a = omega * end * i / steps;
         if (i % every == 0) {
-            memcpy(c.axis, (double[3][3]){{cos(a), sin(a), 0}, {-sin(a), cos(a), 0}, {0, 0, 1}}, sizeof c.axis);
+            turned_axes((double[]){0, 0, a}, c.axis);
             set(s, &c, 1);
         }
         run(s, m, end / steps, 1);
@@ -179,13 +108,12 @@ static void turntable(void)
                 spring_collider c = unit_box;
                 c.at[1] = -0.1;
                 if (kind == 0)
-                    c = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+                    c = ground;
                 c.friction = 0.8, c.spin[1] = omega;
                 double off = 0, now[3], u[3];
                 for (int f = 0; f < 6000; f++) {
-                    const double phi[3] = {0, omega * f * frame, 0};
-                    for (int k = 0; k < 3 && kind == 1 && !once; k++)
-                        turn(phi, unit_box.axis[k], c.axis[k]);
+                    if (kind == 1 && !once)
+                        turned_axes((double[]){0, omega * f * frame, 0}, c.axis);
                     if (f == 0 || !once)
                         set(s, &c, 1);
                     run(s, SPRING_LEAPFROG, frame / n, (uint64_t)n);
@@ -221,7 +149,7 @@ static void rocking_box(void)
         get(s, now, u);
         double there[3];
         turn((double[3]){q1 * axis[0], 0, q1 * axis[2]}, start, there);
-        slip = fmax(slip, hypot(hypot(now[0] - there[0], now[1] - there[1]), now[2] - there[2]));
+        slip = fmax(slip, distance(now, there));
     }
     CHECK_BELOW(slip, in_double ? 1e-8 : 1e-3, "the slip in 20 s");
     free(s);
@@ -302,18 +230,26 @@ static void block_exact(double A, double t, double *x, double *v)
     *v = sticks ? 0 : -block_omega * (from - centre) * sin(block_omega * t);
 }
 
-static uint32_t tilted(void *user, const double y[3], double gap[3], double normal[3][3])
+/* A custom body: the half-spaces below planes through the origin, with a contact for each. */
+typedef struct faces {
+    uint32_t count;
+    double normal[3][3];
+} faces;
+
+static uint32_t gaps_of_faces(void *user, const double y[3], double gap[3], double normal[3][3])
 {
-    (void)user;
-    normal[0][0] = -sin(0.3), normal[0][1] = cos(0.3), normal[0][2] = 0;
-    gap[0] = dot(normal[0], y);
-    return 1;
+    const faces *f = user;
+    memcpy(normal, f->normal, sizeof f->normal);
+    for (uint32_t k = 0; k < f->count; k++)
+        gap[k] = dot(f->normal[k], y);
+    return f->count;
 }
 
 /* On a tilted plane, at rest or moving; the plane may be a custom body. */
 static double block_error(spring_method m, double A, double end, double dt, bool moving, bool custom)
 {
-    const double n[3] = {-sin(0.3), cos(0.3), 0}, velocity[3] = {3, 1, 2};
+    faces tilted = {1, {{-sin(0.3), cos(0.3), 0}}};
+    const double *const n = tilted.normal[0], velocity[3] = {3, 1, 2};
     double t[3] = {cos(0.3) * 0.8, sin(0.3) * 0.8, 0.6}, x[6], v[6], exact, rate;
     for (int a = 0; a < 3; a++) {
         x[a] = -10 * t[a], x[3 + a] = A * t[a];
@@ -321,22 +257,15 @@ static double block_error(spring_method m, double A, double end, double dt, bool
     }
     const uint8_t pinned[2] = {1, 0};
     const spring_link link = {.a = 0, .b = 1, .rest = 10, .stiffness = 0.7 * block_omega * block_omega};
-    const spring_scene_def def = {.particles = 2,
-                                  .position = x,
-                                  .velocity = v,
-                                  .pinned = pinned,
-                                  .mass_all = 0.7,
-                                  .links = 1,
-                                  .link = &link,
-                                  .gravity = {-gravity * n[0], -gravity * n[1], 0},
-                                  .colliders = 1,
-                                  .methods = 1u << m};
-    spring_scene *s = scene_of(&def);
+    spring_scene_def def = falling(2, x, v, 0.7);
+    def.pinned = pinned, def.links = 1, def.link = &link;
     spring_collider c = {.shape = SPRING_PLANE, .axis = {{n[0], n[1], n[2]}}, .friction = block_mu};
     if (custom)
-        c = (spring_collider){.shape = SPRING_CUSTOM, .gap = tilted, .thickness = 1, .friction = block_mu};
-    memcpy(c.velocity, v, sizeof c.velocity);
-    set(s, &c, 1);
+        c = (spring_collider){
+            .shape = SPRING_CUSTOM, .gap = gaps_of_faces, .user = &tilted, .thickness = 1, .friction = block_mu};
+    for (int a = 0; a < 3; a++)
+        c.velocity[a] = v[a], def.gravity[a] = -gravity * n[a];
+    spring_scene *s = scene_with(&def, &c);
     const uint64_t steps = (uint64_t)lround(end / dt);
     run(s, m, end / (double)steps, steps);
     block_exact(A, end, &exact, &rate);
@@ -369,30 +298,43 @@ static void friction_across_reversals(void)
         }
 }
 
-/* Two planes that enclose an angle of 0.5 to 60 degrees: a particle that falls between them comes to rest, outside of both. */
+/* Two planes that enclose an angle of 2 half. */
+static void make_groove(double half, double friction, spring_collider c[2])
+{
+    for (int k = 0; k < 2; k++)
+        c[k] = (spring_collider){
+            .shape = SPRING_PLANE, .axis = {{k ? -cos(half) : cos(half), sin(half), 0}}, .friction = friction};
+}
+
+/* Two planes that enclose an angle of 0.5 to 60 degrees: a particle that falls between them comes to rest, outside of both.
+   If they close in on a particle, they push it out. */
 static void grooves(void)
 {
     static const double degrees[] = {60, 20, 4, 2, 0.5};
+    enum { closing = 2 }; /* others: friction or none */
     for (int i = 0; i < 5; i++)
-        for (int mu = 0; mu < 2; mu++)
+        for (int how = 0; how <= closing; how++)
             for (int m = 0; m < method_count; m++) {
-                const double half = degrees[i] * PI / 360, x[3] = {0.3 * sin(half), 1, 0}, none[3] = {0},
-                             g[3] = {0, -gravity, 0};
-                spring_collider c[2] = {
-                    {.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}, .friction = 0.3 * mu},
-                    {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}, .friction = 0.3 * mu}};
+                const double half = degrees[i] * PI / 360, none[3] = {0}, g[3] = {0, -gravity, 0};
+                const double x[3] = {how == closing ? 0 : 0.3 * sin(half), 1, 0};
+                const double toward = how == closing ? 0.02 * sin(half) : 0; /* [m/s] the corner rises by 0.02 m/s */
+                double inside = 0, now[3], v[3];
+                spring_collider c[2];
+                make_groove(half, how == 1 ? 0.3 : 0, c);
+                for (int k = 0; k < 2; k++)
+                    for (int a = 0; a < 3; a++)
+                        c[k].velocity[a] = toward * c[k].axis[0][a];
                 spring_scene *s = particle_at(x, none, g, 2);
                 set(s, c, 2);
-                double inside = 0, now[3], v[3];
-                for (int k = 0; k < 480 * 6; k++) {
+                for (int k = 1; k <= 480 * 6; k++) {
                     run(s, with_contacts[m], 1. / 480, 1);
                     get(s, now, v);
                     for (int j = 0; j < 2; j++)
-                        inside = fmax(inside, -dot(now, c[j].axis[0]));
+                        inside = fmax(inside, k / 480. * toward - dot(now, c[j].axis[0]));
                 }
                 CHECK_BELOW(inside, in_double ? 1e-14 : 1e-6, "inside");
-                CHECK_BELOW(length(v), in_double ? 1e-12 : 1e-4, "at rest");
-                CHECK(spring_scene_at_rest(s, 1e-3, 1e-3), "at rest");
+                CHECK_BELOW(length(v), how == closing ? 0.02 + gravity / 480 : in_double ? 1e-12 : 1e-4, "at rest");
+                CHECK(how == closing || spring_scene_at_rest(s, 1e-3, 1e-3), "at rest");
                 free(s);
             }
 }
@@ -405,8 +347,8 @@ static void wide_grooves(void)
     for (int i = 0; i < 60; i++) {
         const double half = random_uniform(90, 165) * PI / 360, dt = random_log(1. / 960, 1. / 60);
         const double x[3] = {random_uniform(-0.4, 0.4), 0.5, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
-        spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}},
-                                {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}}};
+        spring_collider c[2];
+        make_groove(half, 0, c);
         spring_scene *s = particle_at(x, none, g, 2);
         set(s, c, 2);
         run(s, SPRING_LEAPFROG, dt, (uint64_t)(60 / dt));
@@ -421,30 +363,6 @@ static void wide_grooves(void)
     CHECK_BELOW(fastest, 2, "speed in a wide groove, in units of g dt: spring_scene_set_colliders()");
 }
 
-/* [m] The distance from the surface of a body. */
-static double gap_of(const spring_collider *c, const double x[3])
-{
-    double arm[3], segment[3] = {0}, far = 0, largest = -INFINITY;
-    for (int a = 0; a < 3; a++)
-        arm[a] = x[a] - c->at[a];
-    if (c->shape == SPRING_PLANE)
-        return dot(arm, c->axis[0]);
-    if (c->shape == SPRING_BOX) {
-        for (int i = 0; i < 3; i++) {
-            const double over = fabs(dot(arm, c->axis[i])) - c->half[i];
-            largest = fmax(largest, over);
-            far = hypot(far, fmax(over, 0));
-        }
-        return (largest > 0 ? far : largest) - c->radius;
-    }
-    for (int a = 0; a < 3 && c->shape == SPRING_CAPSULE; a++)
-        segment[a] = c->to[a] - c->at[a];
-    const double share = fmin(1, fmax(0, dot(arm, segment) / fmax(dot(segment, segment), 1e-300)));
-    for (int a = 0; a < 3; a++)
-        far = hypot(far, arm[a] - share * segment[a]);
-    return far - c->radius;
-}
-
 /* A particle starts inside several bodies that overlap, as a cape at the joints of a figure. It is moved out of all of them,
    to the surface of their union if there are two. */
 static void inside_several(void)
@@ -456,10 +374,10 @@ static void inside_several(void)
         spring_collider c[4];
         const uint32_t count = 2 + (uint32_t)(random_bits() % 3);
         for (uint32_t k = 0; k < count; k++) {
-            spring_collider body = random_collider(3);
-            if (body.shape == SPRING_CUSTOM || (body.shape == SPRING_PLANE && k > 0)) /* two planes may meet far away */
-                body.shape = SPRING_CAPSULE;
+            const spring_collider body = random_collider(3);
             c[k] = (spring_collider){.shape = body.shape, .radius = body.radius, .friction = body.friction};
+            if (body.shape == SPRING_CUSTOM || (body.shape == SPRING_PLANE && k > 0)) /* two planes may meet far away */
+                c[k].shape = SPRING_CAPSULE;
             memcpy(c[k].at, body.at, sizeof body.at);
             memcpy(c[k].to, body.to, sizeof body.to);
             memcpy(c[k].axis, body.axis, sizeof body.axis);
@@ -472,22 +390,18 @@ static void inside_several(void)
         for (int a = 0; a < 3; a++)
             x[a] = random_uniform(-0.5, 0.5);
         for (uint32_t k = 0; k < count; k++) {
-            const double depth = -gap_of(&c[k], x);
+            const double depth = -gap_of(&c[k], 0, x, 3);
             deep[1] = fmax(deep[1], fmin(depth, deep[0]));
             deep[0] = fmax(deep[0], depth);
         }
         if (!(deep[1] > 0))
             continue;
         tried++;
-        spring_scene *s = particle_at(x, none, none, 4);
-        set(s, c, count);
-        run(s, with_contacts[i % 2], frame, 1);
-        get(s, now, v);
+        end_of(particle_at(x, none, none, 4), c, count, with_contacts[i % 2], frame, 1, now, v);
         for (uint32_t k = 0; k < count; k++)
-            least = fmin(least, gap_of(&c[k], now));
+            least = fmin(least, gap_of(&c[k], 0, now, 3));
         inside = fmax(inside, -least);
         outside[count > 2] = fmax(outside[count > 2], least / deep[0]);
-        free(s);
     }
     CHECK(tried > cases / 8, "particles inside two bodies");
     CHECK_BELOW(inside, 8 * 5 * EPS, "inside a body: 8 eps (|x| + |at| + size)");
@@ -507,22 +421,11 @@ static void between_closing_bodies(void)
         for (int k = 0; k < 6; k++) {
             const double speed = (const double[]){0.5, 2, 5}[k / 2], dt = k % 2 ? 1. / 960 : 1. / 240;
             const double x[3] = {offsets[i], r, 0};
-            spring_scene_def def = {.particles = 1,
-                                    .position = x,
-                                    .velocity = none,
-                                    .mass_all = 0.01,
-                                    .colliders = 2,
-                                    .particle_radius = r};
-            memcpy(def.gravity, g, sizeof g);
-            const spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.5},
-                                          {.shape = SPRING_SPHERE,
-                                           .radius = radius,
-                                           .friction = 0.3,
-                                           .at = {0, radius + end_gap + 0.05, 0},
-                                           .velocity = {0, -speed, 0}}};
-            spring_scene *s = scene_of(&def);
-            set(s, c, 2);
+            spring_collider c[2] = {ground, {.shape = SPRING_SPHERE, .radius = radius, .friction = 0.3}};
+            c[0].friction = 0.5, c[1].at[1] = radius + end_gap + 0.05, c[1].velocity[1] = -speed;
+            spring_scene *s = ball_at(x, none, g, r, 2);
             double before[3], now[3], v[3];
+            set(s, c, 2);
             for (int n = 0; n < (int)(0.05 / speed / dt); n++) {
                 get(s, before, v);
                 run(s, SPRING_LEAPFROG, dt, 1);
@@ -545,14 +448,14 @@ static void crevice_of_round_bodies(void)
     for (size_t i = 0; i < cases; i++) {
         const double friction = random_bits() % 3 ? 0 : random_uniform(0.1, 1), speed = random_uniform(-0.3, 0.3),
                      radius[2] = {0.2, random_uniform(0.05, 0.3)},
-                     distance = radius[0] + radius[1] - random_uniform(0.001, 0.05);
-        const double along = (distance + (pow(radius[0], 2) - pow(radius[1], 2)) / distance) / 2;
+                     between = radius[0] + radius[1] - random_uniform(0.001, 0.05);
+        const double along = (between + (pow(radius[0], 2) - pow(radius[1], 2)) / between) / 2;
         const double x[3] = {along, 0, sqrt(pow(radius[0], 2) - along * along)}, none[3] = {0};
         const double pull = random_log(1, 1e5);
         const double g[3] = {pull * random_uniform(-0.3, 0.3), pull * random_uniform(-0.5, 0.5), -pull};
         spring_collider c[2] = {
             {.radius = radius[0], .friction = friction},
-            {.radius = radius[1], .friction = friction, .at = {distance, 0, 0}, .velocity = {speed, 0, 0}}};
+            {.radius = radius[1], .friction = friction, .at = {between, 0, 0}, .velocity = {speed, 0, 0}}};
         c[0].shape = c[1].shape = SPRING_SPHERE;
         if (random_bits() % 2) {
             c[0].shape = SPRING_CAPSULE;
@@ -566,44 +469,13 @@ static void crevice_of_round_bodies(void)
             get(s, before, v);
             run(s, with_contacts[i % 2], dt, 1);
             get(s, now, v);
-            const double way =
-                sqrt(pow(now[0] - before[0], 2) + pow(now[1] - before[1], 2) + pow(now[2] - before[2], 2));
             if (n > 4)
-                worst = fmax(worst, length(v) / (way / dt + length(g) * dt + fabs(speed) + 8 * EPS / dt));
+                worst =
+                    fmax(worst, length(v) / (distance(now, before) / dt + length(g) * dt + fabs(speed) + 8 * EPS / dt));
         }
         free(s);
     }
     CHECK_BELOW(worst, 1, "velocity, in units of that of the motion, of the change in a step, and of the body");
-}
-
-/* Two planes that enclose a small angle close in on a particle between them, which they push out. */
-static void closing_grooves(void)
-{
-    static const double degrees[] = {60, 20, 4, 2, 0.5};
-    double inside = 0;
-    for (int i = 0; i < 5; i++)
-        for (int m = 0; m < method_count; m++) {
-            const double half = degrees[i] * PI / 360, x[3] = {0, 1, 0}, g[3] = {0, -gravity, 0}, none[3] = {0};
-            const double speed = 0.02; /* [m/s] of the corner, upwards */
-            spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}},
-                                    {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}}};
-            for (int k = 0; k < 2; k++) { /* each closes along its normal */
-                const double toward = speed * sin(half);
-                for (int a = 0; a < 3; a++)
-                    c[k].velocity[a] = toward * c[k].axis[0][a];
-            }
-            spring_scene *s = particle_at(x, none, g, 2);
-            set(s, c, 2);
-            double now[3], v[3];
-            for (int k = 1; k <= 480 * 3; k++) {
-                run(s, with_contacts[m], 1. / 480, 1);
-                get(s, now, v);
-                for (int j = 0; j < 2; j++)
-                    inside = fmax(inside, k / 480. * speed * sin(half) - dot(now, c[j].axis[0]));
-            }
-            free(s);
-        }
-    CHECK_BELOW(inside, in_double ? 1e-14 : 1e-6, "inside");
 }
 
 /* A capsule becomes longer or shorter along its own axis, from, to or through the length 0. It hits like one that turns. */
@@ -623,7 +495,7 @@ static void capsules_that_stretch(void)
             c.velocity_to[a] = speed * along[a];
             x[a] = ahead * along[a] + random_uniform(-0.08, 0.08);
         }
-        if (gap_of(&c, x) < 1e-3)
+        if (gap_of(&c, 0, x, 3) < 1e-3)
             continue;
         spring_scene *s = particle_at(x, none, none, 1);
         set(s, &c, 1);
@@ -632,7 +504,7 @@ static void capsules_that_stretch(void)
             run(s, with_contacts[i % 2], dt, 1);
             get(s, now, v);
             spring_scene_get_colliders(s, &c, &count);
-            inside = fmax(inside, -gap_of(&c, now));
+            inside = fmax(inside, -gap_of(&c, 0, now, 3));
             hits += length(v) > 0;
         }
         free(s);
@@ -649,21 +521,15 @@ static void closing_plates(void)
     for (int i = 0; i < 8; i++)
         for (int e = 0; e <= 4; e++) {
             const double tilt = 0.04 * pow(0.1, i), x[3] = {0.01, 0, 0}, v[3] = {0, 10, 0}, none[3] = {0};
-            spring_collider c[2];
+            spring_collider c[2] = {unit_box, unit_box};
+            double now[3], u[3];
             for (int k = 0; k < 2; k++) {
-                const double side = k == 0 ? 1 : -1, a = side * tilt / 2;
-                c[k] = unit_box;
-                memcpy(c[k].axis, (double[3][3]){{cos(a), sin(a), 0}, {-sin(a), cos(a), 0}, {0, 0, 1}},
-                       sizeof c[k].axis);
+                const double side = k == 0 ? 1 : -1;
+                turned_axes((double[]){0, 0, side * tilt / 2}, c[k].axis);
                 c[k].at[1] = -side * 0.11, c[k].velocity[1] = side, c[k].restitution = 0.2 * e;
             }
-            spring_scene *s = particle_at(x, v, none, 2);
-            set(s, c, 2);
-            double now[3], u[3];
-            run(s, SPRING_LEAPFROG, 1. / 240, 1);
-            get(s, now, u);
+            end_of(particle_at(x, v, none, 2), c, 2, SPRING_LEAPFROG, 1. / 240, 1, now, u);
             fastest = fmax(fastest, length(u));
-            free(s);
         }
     CHECK_BELOW(fastest, 12, "speed: 10 m/s, and at most twice the 1 m/s of a plate by an impact");
 }
@@ -671,79 +537,53 @@ static void closing_plates(void)
 /* The friction of a spinning ball on a particle that lands on it does not depend on a common velocity. */
 static void spinning_ball_in_motion(void)
 {
-    double at[2];
+    double now[2][3], u[3];
     for (int moving = 0; moving < 2; moving++) {
         const double V = 20 * moving, x[3] = {0, 1.008, 0}, v[3] = {0, V - 4, 0}, g[3] = {0, -1000, 0};
         const spring_collider c = {
             .shape = SPRING_SPHERE, .radius = 1, .spin = {0, 0, 2}, .friction = 1.4, .velocity = {0, V, 0}};
-        spring_scene *s = particle_at(x, v, g, 1);
-        double now[3], u[3];
-        set(s, &c, 1);
-        run(s, SPRING_LEAPFROG, 1. / 240, 1);
-        get(s, now, u);
-        at[moving] = now[0];
-        free(s);
+        end_of(particle_at(x, v, g, 1), &c, 1, SPRING_LEAPFROG, 1. / 240, 1, now[moving], u);
     }
-    CHECK_CLOSE(at[1], at[0], 64 * EPS * fabs(at[0]), "rounding of positions of 1 m");
+    CHECK_CLOSE(now[1][0], now[0][0], 64 * EPS * fabs(now[0][0]), "rounding of positions of 1 m");
 }
 
 /* -------------------------------------------------------------------------------------------------------- tunnelling */
 
 /* A plate 2 b thick flies through a cloud at up to 500 m/s and turns by up to 0.2 rad in a step. */
-static void plates(double thick, double speed, double angle, double dt, size_t *contacts, size_t *through,
-                   size_t *around)
+static void plates(spring_method m, double thick, double speed, double angle, double dt, size_t *contacts,
+                   size_t *through, size_t *around)
 {
     enum { count = 40 };
-    double x[count][3], v[count][3], radius[count];
-    spring_collider c = {.shape = SPRING_BOX, .friction = 0.3};
-    double to[3];
-    random_unit(c.axis[0], 3);
-    do
-        random_unit(to, 3);
-    while (fabs(dot(to, c.axis[0])) > 0.9);
-    cross(c.axis[0], to, c.axis[1]);
-    for (int a = 0; a < 3; a++)
-        c.axis[1][a] /= sqrt(1 - pow(dot(to, c.axis[0]), 2));
-    cross(c.axis[0], c.axis[1], c.axis[2]);
-    c.half[0] = thick / 2, c.half[1] = random_uniform(0.3, 1), c.half[2] = random_uniform(0.3, 1);
-    double velocity[3], spin[3];
+    double x[count][3], v[count][3], radius[count], velocity[3], spin[3];
+    spring_collider c = {
+        .shape = SPRING_BOX, .half = {thick / 2, random_uniform(0.3, 1), random_uniform(0.3, 1)}, .friction = 0.3};
+    random_axes(c.axis);
     random_unit(velocity, 3);
     random_unit(spin, 3);
     const double fast = speed * random_uniform(0, 1), turning = angle / dt * random_uniform(0, 1);
     for (int a = 0; a < 3; a++)
         c.velocity[a] = fast * velocity[a], c.spin[a] = turning * spin[a];
     for (int i = 0; i < count; i++) {
-        double target[3], direction[3], gap;
+        double target[3], direction[3];
         radius[i] = i % 2 ? 0.005 : 0;
         do {
             random_unit(target, 3);
             random_unit(direction, 3);
             const double far = 0.8 * random_uniform(0, 1), u = 0.3 * speed * random_uniform(0, 1) + 1;
-            double y[3];
             for (int a = 0; a < 3; a++) {
                 v[i][a] = u * direction[a];
                 x[i][a] = far * target[a] + 10 * dt * (c.velocity[a] - v[i][a]);
-                y[a] = x[i][a];
             }
-            gap = 0;
-            for (int k = 0; k < 3; k++)
-                gap = fmax(gap, fabs(dot(y, c.axis[k])) - c.half[k]);
-        } while (gap < 0.01);
+        } while (gap_of(&c, 0, x[i], 3) < 0.01);
     }
-    const spring_scene_def def = {.particles = count,
-                                  .position = x[0],
-                                  .velocity = v[0],
-                                  .mass_all = 0.4,
-                                  .gravity = {0, -gravity, 0},
-                                  .colliders = 1,
-                                  .radius = radius};
-    spring_scene *s = scene_of(&def);
-    set(s, &c, 1);
+    spring_scene_def def = falling(count, x[0], v[0], 0.4);
+    def.radius = radius;
+    spring_scene *s = scene_with(&def, &c);
     double before[count][3] = {{0}};
     for (int k = 0; k < 60; k++) {
         uint32_t touched[count];
         double phi[3];
-        run(s, SPRING_LEAPFROG, dt, 1);
+        run(s, m, dt, 1);
         spring_scene_get(s, SPRING_POSITION, x[0], 0, 0, count);
         spring_scene_touching(s, touched, 0, count);
         for (int a = 0; a < 3; a++)
@@ -774,10 +614,12 @@ static void plates(double thick, double speed, double angle, double dt, size_t *
 
 static void no_tunnelling(void)
 {
+    static const spring_method methods[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
     size_t contacts = 0, through = 0, around = 0;
     const size_t wanted = getenv("CONTACTS") != NULL ? (size_t)atol(getenv("CONTACTS")) : random_cases(20000);
     for (int i = 0; contacts < wanted; i++)
-        plates(i % 2 ? 0.1 : 0.002, i % 2 ? 500 : 100, i % 3 ? 0.2 : 0.05, 1. / 480, &contacts, &through, &around);
+        plates(methods[i / 6 % 3], i % 2 ? 0.1 : 0.002, i % 2 ? 500 : 100, i % 3 ? 0.2 : 0.05, 1. / 480, &contacts,
+               &through, &around);
     printf("# %zu contacts, %zu through a face, %zu around an edge in a step\n", contacts, through, around);
     CHECK(through == 0, "none passes through a face");
 }
@@ -828,8 +670,7 @@ static void balance(spring_method method, uint32_t axes, double *worst)
     spring_collider c[most_bodies];
     for (uint32_t i = 0; i < m.def.colliders; i++)
         c[i] = random_collider(axes);
-    spring_scene *s = scene_of(&m.def);
-    set(s, c, m.def.colliders);
+    spring_scene *s = scene_with(&m.def, c);
     double gravity_of[3] = {0}, given[3] = {0}, turned[3] = {0}, size = 0;
     memcpy(gravity_of, m.def.gravity, axes * sizeof *gravity_of);
     const momenta first = momenta_of(&m, s);
@@ -844,8 +685,8 @@ static void balance(spring_method method, uint32_t axes, double *worst)
         last = momenta_of(&m, s);
         size += last.size;
         double middle[3], moment[3];
-        for (int a = 0; a < 3;
-             a++) /* where gravity acts: at the start, at both ends, or in the middle before contacts */
+        /* where gravity acts: at the start, at both ends, or in the middle before contacts */
+        for (int a = 0; a < 3; a++)
             middle[a] = method == SPRING_SYMPLECTIC_EULER     ? before.place[a]
                         : method == SPRING_LEAPFROG && !heavy ? (before.place[a] + last.place[a]) / 2
                                                               : before.place[a] + h / 2 * before.linear[a];
@@ -881,31 +722,27 @@ static void momentum_balance(void)
    speed of the ball is the last one known, so energy is not conserved: its ratio to the right one, minus 1. */
 static double coupled(int count, double ratio, double e)
 {
-    double x[64][3], v[64][3], V[3] = {0}, at[3] = {0}, P0 = 0, P1, E1, E0 = 0;
+    double x[64][3] = {{0}}, v[64][3] = {{0}};
     const double M = 5, m = ratio * M / count;
-    for (int i = 0; i < count; i++) { /* beams along x, that hit at different times */
-        x[i][0] = -0.5 - 0.3 * i / count, x[i][1] = x[i][2] = 0;
-        v[i][0] = 3, v[i][1] = v[i][2] = 0;
-        P0 += m * 3, E0 += m * 9 / 2;
-    }
-    const spring_scene_def def = {
-        .particles = (size_t)count, .position = x[0], .velocity = v[0], .mass_all = m, .colliders = 1};
+    for (int i = 0; i < count; i++) /* beams along x, that hit at different times */
+        x[i][0] = -0.5 - 0.3 * i / count, v[i][0] = 3;
+    const double P0 = count * m * 3, E0 = P0 * 3 / 2;
+    spring_scene_def def = falling((size_t)count, x[0], v[0], m);
+    def.gravity[1] = 0;
+    spring_collider c = {.shape = SPRING_SPHERE, .radius = 0.1, .restitution = e};
     spring_scene *s = scene_of(&def);
     for (int f = 0; f < 60; f++) {
         spring_impulse j;
-        spring_collider c = {.shape = SPRING_SPHERE, .radius = 0.1, .restitution = e};
-        memcpy(c.at, at, sizeof at);
-        memcpy(c.velocity, V, sizeof V);
         set(s, &c, 1);
         run(s, SPRING_LEAPFROG, 1. / 480, 8);
         spring_scene_impulses(s, &j, 0, 1);
         for (int a = 0; a < 3; a++) {
-            at[a] += 8. / 480 * V[a];
-            V[a] += j.linear[a] / M;
+            c.at[a] += 8. / 480 * c.velocity[a];
+            c.velocity[a] += j.linear[a] / M;
         }
     }
     spring_scene_get(s, SPRING_VELOCITY, v[0], 0, 0, (size_t)count);
-    P1 = M * V[0], E1 = M * dot(V, V) / 2;
+    double P1 = M * c.velocity[0], E1 = M * dot(c.velocity, c.velocity) / 2;
     for (int i = 0; i < count; i++)
         P1 += m * v[i][0], E1 += m * dot(v[i], v[i]) / 2;
     free(s);
@@ -958,38 +795,38 @@ static spring_scene *make_column(const loaded_column *c, double *top)
         x[3 * i + 4] = x[3 * i + 1] + rest - unit * (c->mass + c->links - i);
     }
     *top = x[3 * c->links + 1];
-    const spring_scene_def def = {.particles = c->links + 1,
-                                  .position = x,
-                                  .pinned = pinned,
-                                  .mass_all = column_mass,
-                                  .links = c->links,
-                                  .link = link,
-                                  .gravity = {0, -gravity},
-                                  .colliders = 1};
+    spring_scene_def def = falling(c->links + 1, x, NULL, column_mass);
+    def.pinned = pinned, def.links = c->links, def.link = link;
     return scene_of(&def);
+}
+
+/* A call of the loop of docs/games.md, for a body of mass M that rests on a scene. *before: the impulse of the last call */
+static void couple(spring_scene *s, spring_collider *body, double M, double T, uint64_t steps, bool extrapolates,
+                   double *before)
+{
+    spring_impulse j;
+    set(s, body, 1);
+    run(s, SPRING_LEAPFROG, T / (double)steps, steps);
+    spring_scene_impulses(s, &j, 0, 1);
+    body->at[1] += T * body->velocity[1] + T * T / 2 * body->acceleration[1];
+    body->velocity[1] += j.linear[1] / M - gravity * T;
+    const double last = isnan(*before) ? j.linear[1] : *before;
+    body->acceleration[1] = (extrapolates ? 3 * j.linear[1] - last : 2 * j.linear[1]) / (2 * T * M) - gravity;
+    *before = j.linear[1];
 }
 
 /* The loop of docs/games.md, with or without extrapolation of the force, for 40 s and at least 50 periods. Returns the
    amplitude in the last fifth relative to that in the first fifth. */
 static double amplitude_ratio(const loaded_column *c)
 {
-    double rest, before = 0, first = 0, last = 0;
+    double rest, before = NAN, first = 0, last = 0;
     spring_scene *s = make_column(c, &rest);
-    const double T = c->T, M = c->mass * column_mass, omega = column_omega(c);
-    const int calls = (int)(fmax(40, 100 * PI / omega) / T);
+    const double omega = column_omega(c);
+    const int calls = (int)(fmax(40, 100 * PI / omega) / c->T);
     spring_collider body = {.shape = SPRING_PLANE, .axis = {{0, -1, 0}}, .at = {0, rest, 0}};
     body.velocity[1] = -0.1 * gravity / omega;
     for (int i = 0; i < calls; i++) {
-        spring_impulse j;
-        set(s, &body, 1);
-        run(s, SPRING_LEAPFROG, T / (double)c->steps, c->steps);
-        spring_scene_impulses(s, &j, 0, 1);
-        body.at[1] += T * body.velocity[1] + T * T / 2 * body.acceleration[1];
-        body.velocity[1] += j.linear[1] / M - gravity * T;
-        const double force =
-            c->extrapolates ? (3 * j.linear[1] - (i == 0 ? j.linear[1] : before)) / (2 * T) : j.linear[1] / T;
-        body.acceleration[1] = force / M - gravity;
-        before = j.linear[1];
+        couple(s, &body, c->mass * column_mass, c->T, c->steps, c->extrapolates, &before);
         if (i < calls / 5)
             first = fmax(first, fabs(body.at[1] - rest));
         if (i >= calls - calls / 5)
@@ -1049,20 +886,14 @@ static double block_speed_ratio(double layers)
                            .damping = 0.02 * sqrt(2 * 1000 * 0.05),
                            .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
                            .pinned = SPRING_GRID_FIRST_Y};
-    double x[3 * count], largest[4] = {0}, before = 0;
+    double x[3 * count], largest[4] = {0}, before = NAN;
     uint8_t pinned[count];
     spring_link link[9 * count];
     size_t particles, links;
     CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && links <= 9 * count, "room for the links");
     spring_grid_fill(&g, x, pinned, link);
-    const spring_scene_def def = {.particles = particles,
-                                  .links = links,
-                                  .position = x,
-                                  .pinned = pinned,
-                                  .link = link,
-                                  .mass_all = 0.05,
-                                  .gravity = {0, -gravity, 0},
-                                  .colliders = 1};
+    spring_scene_def def = falling(particles, x, NULL, 0.05);
+    def.pinned = pinned, def.links = links, def.link = link;
     spring_scene *s = scene_of(&def);
     const double T = 2 * spring_scene_stable_step(s, SPRING_LEAPFROG), M = layers * side * side * 0.05;
     const int calls = (int)(20 / T);
@@ -1070,14 +901,7 @@ static double block_speed_ratio(double layers)
         .shape = SPRING_PLANE, .axis = {{0, -1, 0}}, .at = {0, 0.1 * (side - 1), 0}, .friction = 0.5};
     body.acceleration[1] = -gravity;
     for (int i = 0; i < calls; i++) {
-        spring_impulse j;
-        set(s, &body, 1);
-        run(s, SPRING_LEAPFROG, T / 3, 3);
-        spring_scene_impulses(s, &j, 0, 1);
-        body.at[1] += T * body.velocity[1] + T * T * body.acceleration[1] / 2;
-        body.velocity[1] += j.linear[1] / M - gravity * T;
-        body.acceleration[1] = -gravity + (3 * j.linear[1] - (i > 0 ? before : j.linear[1])) / (2 * M * T);
-        before = j.linear[1];
+        couple(s, &body, M, T, 3, true, &before);
         largest[4 * i / calls] = fmax(largest[4 * i / calls], fabs(body.velocity[1]));
     }
     free(s);
@@ -1300,18 +1124,10 @@ static void damped_link_at_rest(void)
         for (int m = 0; m < method_count; m++) {
             const double x[6] = {0, 0, 0, 0, rest - load / k, 0};
             const spring_link link = {.b = 1, .rest = rest, .stiffness = k, .damping = dt_G / dt * mass / 2};
-            const spring_scene_def def = {.particles = 2,
-                                          .position = x,
-                                          .mass_all = mass,
-                                          .links = 1,
-                                          .link = &link,
-                                          .gravity = {0, -gravity},
-                                          .colliders = 1,
-                                          .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
-            const spring_collider floor = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
-            spring_scene *s = scene_of(&def);
+            spring_scene_def def = falling(2, x, NULL, mass);
+            def.links = 1, def.link = &link;
+            spring_scene *s = scene_with(&def, &ground);
             double end[6];
-            set(s, &floor, 1);
             run(s, with_contacts[m], dt, 10000);
             spring_scene_get(s, SPRING_POSITION, end, 0, 0, 2);
             const bool rests = spring_scene_at_rest(s, 0.01, 0.05);
@@ -1393,20 +1209,14 @@ static void values_of_particles(void)
         radius[i] = 0.01 * i, friction[i] = 0.25 * (i % 4), mask[i] = (uint32_t)i % 4;
     }
     const double tilt = 0.3, a = gravity * sin(tilt), b = gravity * cos(tilt);
-    const spring_scene_def def = {.particles = count,
-                                  .position = x[0],
-                                  .gravity = {0, -b, a},
-                                  .mass_all = 2,
-                                  .colliders = 2,
-                                  .radius = radius,
-                                  .friction = friction,
-                                  .mask = mask};
-    spring_scene *s = scene_of(&def);
+    spring_scene_def def = falling(count, x[0], NULL, 2);
+    def.gravity[1] = -b, def.gravity[2] = a;
+    def.colliders = 2, def.radius = radius, def.friction = friction, def.mask = mask;
     const spring_collider c[2] = {
         {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.4, .mask = 1},
         {.shape = SPRING_PLANE, .at = {0, -1, 0}, .axis = {{0, 1, 0}}, .friction = 0.4, .mask = 2},
     };
-    set(s, c, 2);
+    spring_scene *s = scene_with(&def, c);
     run(s, SPRING_LEAPFROG, 1. / 240, 480);
     for (size_t i = 0; i < count; i++) {
         double now[3], v[3];
@@ -1553,15 +1363,9 @@ static int shots(spring_collider c, double radius, double speed, bool field, dou
             v[i][a] = field ? speed * (a == 1 ? -random_uniform(0, 1) : random_uniform(-0.5, 0.5)) : u * to[a];
         }
     }
-    const spring_scene_def def = {.particles = count,
-                                  .position = x[0],
-                                  .velocity = v[0],
-                                  .mass_all = 0.3,
-                                  .gravity = {0, -g, 0},
-                                  .colliders = 1,
-                                  .particle_radius = radius};
-    spring_scene *s = scene_of(&def);
-    set(s, &c, 1);
+    spring_scene_def def = falling(count, x[0], v[0], 0.3);
+    def.gravity[1] = -g, def.particle_radius = radius;
+    spring_scene *s = scene_with(&def, &c);
     int out = 0;
     for (int k = 0; k < 300; k++)
         run(s, SPRING_LEAPFROG, 1. / 480, 1);
@@ -1620,11 +1424,7 @@ static void slide_on(spring_collider c, const double x[3], const double v[3], ui
     c.gap(c.user, at, gap, n);
     for (int a = 0; a < 3; a++)
         u[a] = v[a] - dot(v, n[0]) * n[0][a];
-    spring_scene *s = particle_at(at, u, g, 1);
-    set(s, &c, 1);
-    run(s, SPRING_LEAPFROG, 1. / (double)steps, steps);
-    get(s, out, u);
-    free(s);
+    end_of(particle_at(at, u, g, 1), &c, 1, SPRING_LEAPFROG, 1. / (double)steps, steps, out, u);
 }
 
 static void custom_order(void)
@@ -1657,23 +1457,15 @@ static uint32_t not_finite_gap(void *user, const double y[3], double gap[3], dou
     return 1;
 }
 
-/* A valley of two faces, as two contacts of one body: a particle rests in it. Gaps that are not finite are reported. */
-static uint32_t valley(void *user, const double y[3], double gap[3], double normal[3][3])
-{
-    (void)user;
-    for (int k = 0; k < 2; k++) {
-        const double n[3] = {k ? -0.8 : 0.8, 0.6, 0};
-        memcpy(normal[k], n, sizeof n);
-        gap[k] = dot(n, y);
-    }
-    return 2;
-}
+static faces level = {1, {{0, 1, 0}}}, floor_and_wall = {2, {{0, 1, 0}, {1, 0, 0}}},
+             valley = {2, {{0.8, 0.6, 0}, {-0.8, 0.6, 0}}};
 
+/* A valley of two faces, as two contacts of one body: a particle rests in it. Gaps that are not finite are reported. */
 static void contacts_of_a_custom_body(void)
 {
     const double x[3] = {0.1, 1, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
     spring_scene *s = particle_at(x, none, g, 1);
-    spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 1, .gap = valley};
+    spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 1, .gap = gaps_of_faces, .user = &valley};
     double now[3], v[3];
     set(s, &c, 1);
     run(s, SPRING_LEAPFROG, 1. / 480, 4800);
@@ -1691,29 +1483,14 @@ static void contacts_of_a_custom_body(void)
     free(s);
 }
 
-static uint32_t level(void *user, const double y[3], double gap[3], double normal[3][3])
-{
-    (void)user;
-    gap[0] = y[1];
-    memcpy(normal[0], (double[]){0, 1, 0}, sizeof normal[0]);
-    return 1;
-}
-
-static uint32_t floor_and_wall(void *user, const double y[3], double gap[3], double normal[3][3])
-{
-    level(user, y, gap, normal);
-    gap[1] = y[0];
-    memcpy(normal[1], (double[]){1, 0, 0}, sizeof normal[1]);
-    return 2;
-}
-
 /* A particle slides over the floor of a custom body to its wall, and not less far, wherever the body is and however thick. */
 static void corner_of_a_custom_body(void)
 {
     for (int k = 0; k < 60; k++) {
         const double at = k % 4 ? random_log(0.1, 100) : 0, thickness = random_log(1, 1e6), speed = random_log(0.1, 10);
         const double x[3] = {at + 0.7 * speed, 0, 0}, v[3] = {-speed, 0, 0}, g[3] = {0, -gravity, 0}, dt = 1. / 480;
-        const spring_collider c = {.shape = SPRING_CUSTOM, .gap = floor_and_wall, .thickness = thickness, .at = {at}};
+        spring_collider c = {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .user = &floor_and_wall, .at = {at}};
+        c.thickness = thickness;
         /* rounding errors of positions, and 1000 slops of the function, see contact.c */
         const double off = fmax(100 * EPS * (at + 1), 8e3 * DBL_EPSILON * (2 * at + 1 + thickness));
         spring_scene *s = particle_at(x, v, g, 1);
@@ -1729,14 +1506,13 @@ static void corner_of_a_custom_body(void)
     }
 }
 
-/* A wall that starts to move hits the particle that rests on it: (1 + e) V. A plate stops it. */
 /* A taut rope with links of length 0.1 that slides to and fro around a sharp edge of 90 degrees at the origin. The depth to
    which links enter the body [m], with particles of radius r. */
 static double cut_of_links(double r)
 {
-    enum { n = 12, axes = 2 };
+    enum { n = 12 };
     const double spacing = 0.1, half = (n - 1) * spacing / 2, stretch = 1e-3;
-    double x[n][axes], deepest = 0;
+    double x[n][2], deepest = 0;
     uint8_t pinned[n] = {[0] = 1, [n - 1] = 1};
     spring_link link[n - 1];
     for (uint32_t i = 0; i < n; i++) {
@@ -1745,23 +1521,15 @@ static double cut_of_links(double r)
         if (i > 0)
             link[i - 1] = (spring_link){i - 1, i, spacing, 1000, 0.5, 0};
     }
-    const spring_scene_def def = {.axes = axes,
-                                  .particles = n,
-                                  .links = n - 1,
-                                  .position = x[0],
-                                  .mass_all = 0.01,
-                                  .pinned = pinned,
-                                  .link = link,
-                                  .drag = 0.05,
-                                  .colliders = 1,
-                                  .particle_radius = r};
-    spring_scene *s = scene_of(&def);
-    set(s, &(spring_collider){.shape = SPRING_BOX, .at = {-1, -1}, .half = {1, 1, 1}, .axis = {{1}, {0, 1}, {0, 0, 1}}},
-        1);
+    spring_scene_def def = falling(n, x[0], NULL, 0.01);
+    def.axes = 2, def.pinned = pinned, def.links = n - 1, def.link = link;
+    def.gravity[1] = 0, def.drag = 0.05, def.particle_radius = (scalar)r, def.methods = 1u << SPRING_LEAPFROG;
+    spring_collider box = {.shape = SPRING_BOX, .at = {-1, -1}, .half = {1, 1, 1}, .axis = {{1}, {0, 1}, {0, 0, 1}}};
+    spring_scene *s = scene_with(&def, &box);
     const double leg = half * (1 + stretch) - r; /* from the edge to a pin, if a link is parallel to each face */
     for (int i = 0; i < 120; i++) {
         const double slide = i < 30 ? 0 : spacing * sin(0.1 * (i - 30));
-        const double first[axes] = {-leg - slide, r + 1e-3}, last[axes] = {r + 1e-3, -leg + slide};
+        const double first[] = {-leg - slide, r + 1e-3}, last[] = {r + 1e-3, -leg + slide};
         CHECK(spring_scene_drive(s, 0, first, i < 10 ? 0.5 : 0.05) == SPRING_OK &&
                   spring_scene_drive(s, n - 1, last, i < 10 ? 0.5 : 0.05) == SPRING_OK,
               "pins");
@@ -1787,54 +1555,38 @@ static void links_at_an_edge(void)
     CHECK(depth > 0.01 * spacing, "smaller particles let them in");
 }
 
+/* A wall that starts to move hits the particle that rests on it: (1 + e) V. A plate stops it. */
 static void hit_from_rest(void)
 {
     const double x[3] = {0.3, 0.1, -0.2}, none[3] = {0}, e = 0.5, speed = 2;
-    spring_scene *s = particle_at(x, none, none, 1);
-    spring_collider c = unit_box;
-    c.restitution = e;
-    c.velocity[1] = speed;
+    spring_collider both[2] = {unit_box, unit_box};
+    both[0].restitution = e, both[0].velocity[1] = speed;
     double now[3], v[3];
-    set(s, &c, 1);
-    run(s, SPRING_LEAPFROG, 0.01, 3);
-    get(s, now, v);
+    end_of(particle_at(x, none, none, 1), both, 1, SPRING_LEAPFROG, 0.01, 3, now, v);
     CHECK_CLOSE(v[1], (1 + e) * speed, 8 * EPS * speed, "the velocity after an impact");
     CHECK_CLOSE(now[1], x[1] + 0.03 * v[1], 8 * EPS, "from the start of the step");
-    free(s);
     /* On its new path there is a thin plate, which is far from the path without the wall. */
     const double below = 0.125;
-    spring_collider both[2] = {c, unit_box};
     both[1].at[1] = below + 0.001, both[1].half[1] = 0.001, both[1].restitution = e;
     const double skin = 32 * EPS * (both[1].at[1] + both[1].half[0] + both[1].half[1] + both[1].half[2]);
-    s = particle_at((double[]){x[0], x[1] + skin, x[2]}, none, none, 2);
-    set(s, both, 2);
-    run(s, SPRING_LEAPFROG, 0.01, 1);
-    get(s, now, v);
+    end_of(particle_at((double[]){x[0], x[1] + skin, x[2]}, none, none, 2), both, 2, SPRING_LEAPFROG, 0.01, 1, now, v);
     CHECK(now[1] <= below + 8 * EPS, "not through the plate");
     CHECK(v[1] <= 0, "nor toward it");
-    free(s);
 }
 
 /* A mass on a damped spring that stands on the floor sinks by m g/k. If velocities that are predicted for the damping
    entered the floor, the damping would push it up by about c g dt/2k, here 1 mm. */
 static void damped_spring_on_floor(void)
 {
-    const double x[6] = {0, 0.1, 0, 0, 0.6, 0}, k = 100, c = 2, m = 0.7, g = 9.81, dt = 0.01;
+    const double x[6] = {0, 0.1, 0, 0, 0.6, 0}, k = 100, c = 2, m = 0.7, dt = 0.01;
     const spring_link link = {.a = 0, .b = 1, .rest = 0.5, .stiffness = k, .damping = c};
-    const spring_scene_def def = {.particles = 2,
-                                  .links = 1,
-                                  .position = x,
-                                  .link = &link,
-                                  .mass_all = m,
-                                  .gravity = {0, -g, 0},
-                                  .colliders = 1,
-                                  .methods = 1u << SPRING_LEAPFROG};
-    spring_scene *s = scene_of(&def);
+    spring_scene_def def = falling(2, x, NULL, m);
+    def.links = 1, def.link = &link;
+    spring_scene *s = scene_with(&def, &unit_box);
     double now[6];
-    set(s, &unit_box, 1);
     run(s, SPRING_LEAPFROG, dt, 2500); /* exp(-c t/2m) = 3e-16 */
     spring_scene_get(s, SPRING_POSITION, now, 0, 0, 2);
-    CHECK_CLOSE(now[4] - now[1], 0.5 - m * g / k, in_double ? 1e-12 : 1e-5, "Hooke's law, to rounding");
+    CHECK_CLOSE(now[4] - now[1], 0.5 - m * gravity / k, in_double ? 1e-12 : 1e-5, "Hooke's law, to rounding");
     CHECK_CLOSE(now[1], 0.1, 16 * EPS, "the lower end stands on the floor");
     free(s);
 }
@@ -1846,14 +1598,8 @@ static spring_scene *body_on_spring(double foot, double radius, double rest, dou
 {
     const double x[6] = {0, radius, 0, 0, radius + 0.7, 0}, mass[2] = {foot, body_mass};
     const spring_link link = {0, 1, rest, leg_stiffness, damping, 0};
-    const spring_scene_def def = {.particles = 2,
-                                  .links = 1,
-                                  .position = x,
-                                  .mass = mass,
-                                  .link = &link,
-                                  .gravity = {0, -gravity, 0},
-                                  .colliders = 1,
-                                  .particle_radius = (scalar)radius};
+    spring_scene_def def = falling(2, x, NULL, 0);
+    def.mass = mass, def.links = 1, def.link = &link, def.particle_radius = (scalar)radius;
     return scene_of(&def);
 }
 
@@ -1862,7 +1608,7 @@ static double length_on_platform(double dt, double damping_ratio, int every, dou
 {
     const double foot = 40, A = 0.1, omega = 2 * PI, damping = 2 * damping_ratio * sqrt(leg_stiffness * body_mass);
     spring_scene *s = body_on_spring(foot, 0.3, 0.7 + body_mass * gravity / leg_stiffness, damping);
-    spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+    spring_collider c = ground;
     double sum = 0;
     const int calls = (int)(10 / (dt * every));
     *G = 2 * damping / foot;
@@ -1898,7 +1644,8 @@ static void damped_body_on_platform(void)
 static void damped_body_in_a_lift(void)
 {
     const double foot = 4, rest = 0.8, damping = 2 * sqrt(leg_stiffness * body_mass), a = 3, dt = 1. / 480;
-    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .acceleration = {0, a, 0}};
+    spring_collider c = ground;
+    c.acceleration[1] = a;
     spring_scene *s = body_on_spring(foot, 0, rest, damping);
     double now[6];
     CHECK(dt * 2 * damping / foot > 7, "an exponential kick of several terms");
@@ -1912,24 +1659,23 @@ static void damped_body_in_a_lift(void)
 
 enum { TILES = 5 };
 
-/* A floor of boxes, in a random direction and moving; *plane: the same floor as a plane. */
-static void tiled_floor(spring_collider *box, spring_collider *plane, double size, double overlap, const double off[2])
+/* A floor of boxes. It moves and has a random direction, unless it is still. *plane: the same floor as a plane. */
+static void tiled_floor(spring_collider *box, spring_collider *plane, bool still, double size, double overlap,
+                        const double off[2])
 {
-    const spring_collider whole = {.shape = SPRING_PLANE, .friction = random_bits() % 2 ? random_uniform(0, 0.6) : 0};
-    double phi[3], axis[3][3];
-    random_unit(phi, 3);
-    for (int k = 0; k < 3; k++)
-        turn(phi, unit_box.axis[k], axis[k]);
-    *plane = whole;
+    double axis[3][3];
+    turned_axes((double[3]){0}, axis);
+    *plane = (spring_collider){.shape = SPRING_PLANE, .friction = random_bits() % 2 ? random_uniform(0, 0.6) : 0};
+    if (!still)
+        random_axes(axis);
     memcpy(plane->axis[0], axis[1], sizeof axis[1]);
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3 && !still; a++)
         plane->velocity[a] = random_uniform(-2, 2);
     for (int i = 0; i < TILES * TILES; i++, box++) {
         const double to[] = {(i % TILES - 2) * size + off[0], -0.25, (i / TILES - 2) * size + off[1]};
-        *box = whole;
+        *box = *plane;
         box->shape = SPRING_BOX;
         memcpy(box->axis, axis, sizeof box->axis);
-        memcpy(box->velocity, plane->velocity, sizeof box->velocity);
         for (int a = 0; a < 3; a++) {
             box->at[a] = to[0] * axis[0][a] + to[1] * axis[1][a] + to[2] * axis[2][a];
             box->half[a] = a == 1 ? 0.25 : size / 2 + overlap;
@@ -1937,66 +1683,60 @@ static void tiled_floor(spring_collider *box, spring_collider *plane, double siz
     }
 }
 
-/* A particle falls onto a floor of boxes and slides over it, as on a plane. Tops whose heights differ by rounding errors
+/* A particle falls onto a floor of boxes and slides over it, as on a plane, wherever it starts: also within the skin of a
+   seam, or where four boxes meet. If it bounces, it does so along the normal. Tops whose heights differ by rounding errors
    of single precision are one floor, also in double. */
 static void floor_of_boxes(void)
 {
+    enum { over_a_seam = 3, from_a_corner, onto_a_seam, starts }; /* otherwise anywhere */
     int misses = 0;
-    for (int k = 0; k < 1500; k++) {
+    for (int k = 0; k < 3000; k++) {
         spring_collider box[TILES * TILES], plane;
-        const double size = random_uniform(0.3, 2), overlap = k % 2 ? random_log(1e-3, 50) : 0,
-                     dt = frame / (1 << k % 3);
-        const double off[] = {random_uniform(-0.5, 0.5) * size, random_uniform(-0.5, 0.5) * size};
-        const double radius = k % 4 < 2 ? random_uniform(0.002, 0.05) : 0, height = radius + (k % 5 ? 0 : 0.2);
-        const double angle = random_uniform(0, 2 * PI), speed = random_log(0.2, 15);
-        const bool rounded = k % 8 < 4;
-        double x[3], v[3], g[3], end[2][3];
-        tiled_floor(box, &plane, size, overlap, off);
+        const int start = k % starts;
+        const bool drops = start == onto_a_seam, anywhere = start < over_a_seam;
+        const double size = random_uniform(0.3, 2), overlap = anywhere && k % 2 ? random_log(1e-3, 50) : 0,
+                     dt = frame / (start == over_a_seam ? 8 : 1 << random_bits() % 3), seam = size / 2;
+        const double off[] = {anywhere ? random_uniform(-0.5, 0.5) * size : seam,
+                              start == from_a_corner ? seam : random_uniform(-0.5, 0.5) * size};
+        const double radius = random_bits() % 2 && start != from_a_corner ? random_uniform(0.002, 0.05) : 0;
+        const double height = radius + (drops ? random_uniform(0.5, 2) : anywhere && k % 5 == 0 ? 0.2 : 0);
+        const bool straight = start == over_a_seam || (start == from_a_corner && k % 4 < 2);
+        const double angle = straight ? k % 4 / 2 * PI : random_uniform(0, 2 * PI),
+                     speed = drops ? 0 : random_log(0.2, 15), skin = 32 * EPS * 2 * (size + 0.25),
+                     before = start == over_a_seam ? 5 * dt * speed + skin * random_uniform(-2, 2) : 0;
+        const bool rounded = anywhere && random_bits() % 2;
+        const spring_method method = with_contacts[start == over_a_seam ? 0 : random_bits() % method_count];
+        double x[3], v[3], g[3], end[2][3], u[2][3], apart[2][3];
+        tiled_floor(box, &plane, start == from_a_corner || random_bits() % 4 == 0, size, overlap, off);
         const double *const up = box[0].axis[1];
+        plane.restitution = drops ? k / starts % 3 / 2. : 0;
         for (int a = 0; a < 3; a++) {
             const double along = cos(angle) * box[0].axis[0][a] + sin(angle) * box[0].axis[2][a];
-            x[a] = height * up[a];
+            x[a] = height * up[a] - before * along;
             v[a] = plane.velocity[a] + speed * along;
             g[a] = -gravity * up[a];
         }
-        for (int i = 0; i < TILES * TILES && rounded; i++)
-            for (int a = 0; a < 3; a++)
+        for (int i = 0; i < TILES * TILES; i++) {
+            box[i].restitution = plane.restitution;
+            for (int a = 0; a < 3 && rounded; a++)
                 box[i].at[a] = (float)box[i].at[a];
-        const uint64_t steps = (uint64_t)(fmin(1, 1.8 * size / speed) / dt);
-        for (int whole = 0; whole < 2; whole++) {
-            spring_scene *s = ball_at(x, v, g, radius, TILES * TILES);
-            set(s, whole ? &plane : box, whole ? 1 : TILES * TILES);
-            run(s, with_contacts[k % method_count], dt, steps);
-            spring_scene_get(s, SPRING_POSITION, end[whole], 0, 0, 1);
-            free(s);
         }
-        const double apart = hypot(hypot(end[0][0] - end[1][0], end[0][1] - end[1][1]), end[0][2] - end[1][2]);
+        const uint64_t steps = (uint64_t)(fmin(1, 1.8 * size / fmax(speed, 1)) / dt);
+        for (int whole = 0; whole < 2; whole++)
+            end_of(ball_at(x, v, g, radius, TILES * TILES), whole ? &plane : box, whole ? 1 : TILES * TILES, method, dt,
+                   steps, end[whole], u[whole]);
+        for (int a = 0; a < 3; a++)
+            apart[0][a] = end[0][a] - end[1][a], apart[1][a] = dt * (u[0][a] - u[1][a]);
+        for (int i = 0; i < 2; i++) {
+            const double normal = dot(apart[i], up);
+            for (int a = 0; a < 3 && plane.restitution > 0; a++)
+                apart[i][a] -= normal * up[a];
+        }
         /* For a particle with the radius r, a step of the height d = 5e-7 m is a slope of sqrt(2 d/r). The skin of the
            boxes, whose sizes and coordinates add up to at most 130 m, is 32 EPS of that. */
-        misses += !(apart <= (rounded || !in_double ? 1e-3 : 1e-12));
+        misses += !(fmax(length(apart[0]), length(apart[1])) <= (rounded || !in_double ? 1e-3 : 1e-12));
     }
     CHECK(misses <= 1, "as on a plane, unless a step starts at an edge, to rounding errors");
-}
-
-/* A particle without radius slides down a wall onto the edge of a floor, which enters the wall by very little. */
-static void floor_at_a_wall(void)
-{
-    for (int k = 0; k < 60; k++) {
-        const double enters = in_double ? 1e-7 : 1e-4, dt = frame / (1 << k % 3), g[3] = {3, -gravity, 0};
-        const double x[3] = {-0.2, random_uniform(0.1, 1), 0}, v[3] = {random_uniform(1, 8), 0, random_uniform(-1, 1)};
-        spring_collider c[2] = {unit_box, unit_box}; /* the top of the floor is y = 0, and the wall begins at x = 0 */
-        c[0].at[0] = enters - c[0].half[0];
-        c[0].at[1] = -c[0].half[1];
-        c[1].half[1] = 2;
-        c[1].at[0] = c[1].half[0];
-        spring_scene *s = ball_at(x, v, g, 0, 2);
-        double now[3];
-        set(s, c, 2);
-        run(s, with_contacts[k % method_count], dt, (uint64_t)(1 / dt));
-        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
-        CHECK_BELOW(fmax(fabs(now[1]), fmax(0, now[0])), 1e4 * EPS, "it lies on the floor, at the wall or before it");
-        free(s);
-    }
 }
 
 enum { ROOM_TILES = 3, ROOM_BODIES = ROOM_TILES * ROOM_TILES + 4, ROOM_PARTICLES = 8 };
@@ -2058,10 +1798,8 @@ static void random_room(room *r, int k)
     r->size = random_uniform(0.4, 1.2);
     r->half = ROOM_TILES * r->size / 2;
     r->t = 0;
+    turned_axes(turned ? tilt : (double[3]){0}, r->first);
     for (int a = 0; a < 3; a++) {
-        turn(tilt, unit_box.axis[a], r->first[a]);
-        if (!turned)
-            memcpy(r->first[a], unit_box.axis[a], sizeof r->first[a]);
         r->at[a] = random_uniform(-2, 2);
         r->rate[a] = moves ? random_uniform(-2, 2) : 0;
         r->spin[a] = spins ? random_uniform(-0.5, 0.5) : 0;
@@ -2096,24 +1834,16 @@ static spring_scene *particles_in_room(const room *r, size_t count, double radiu
                  speed[3] = {random_uniform(-6, 6), random_uniform(-3, 1), random_uniform(-6, 6)};
     double x[ROOM_PARTICLES][3], v[ROOM_PARTICLES][3];
     spring_link link[ROOM_PARTICLES * (ROOM_PARTICLES - 1) / 2];
-    size_t links = 0;
+    spring_scene_def def = falling(count, x[0], v[0], 0.1);
     for (uint32_t i = 0; i < count; i++) {
         const double to[3] = {from[0] + 0.05 * (i & 1), from[1] + 0.05 * (i >> 1 & 1), from[2] + 0.05 * (i >> 2)};
         place_of(r, to, x[i]);
         for (int a = 0; a < 3; a++)
             v[i][a] = r->rate[a] + speed[a];
         for (uint32_t j = 0; j < i; j++)
-            link[links++] = (spring_link){.a = j, .b = i, .rest = 0.06, .stiffness = 100, .damping = 0.3};
+            link[def.links++] = (spring_link){.a = j, .b = i, .rest = 0.06, .stiffness = 100, .damping = 0.3};
     }
-    spring_scene_def def = {.particles = count,
-                            .position = x[0],
-                            .velocity = v[0],
-                            .links = links,
-                            .link = links > 0 ? link : NULL,
-                            .mass_all = 0.1,
-                            .particle_radius = (scalar)radius,
-                            .colliders = ROOM_BODIES,
-                            .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
+    def.link = link, def.particle_radius = (scalar)radius, def.colliders = ROOM_BODIES;
     for (int a = 0; a < 3; a++)
         def.gravity[a] = -gravity * r->axis[1][a];
     return scene_of(&def);
@@ -2226,26 +1956,25 @@ static void room_of_planes(void)
     CHECK(worst <= 2.1e-5, "inside");
 }
 
-/* A small particle slides over a floor to a wall that stands at the level of the floor and touches only its edge. */
+/* A small particle slides over a floor, or down a wall, to where they meet. The wall stands at the level of the floor and
+   touches only its edge, or it extends below the floor, which enters it by very little. */
 static void wall_on_a_floor(void)
 {
-    for (int k = 0; k < 400; k++) {
-        const double radius = k % 2 ? random_log(1e-5, 1e-2) : 0, g[3] = {k % 3 ? 0.5 : 0, -gravity, 0};
-        const double x[3] = {-random_log(1e-3, 0.5), radius, 0},
-                     v[3] = {random_log(0.05, 5), 0, random_uniform(-0.2, 0.2)};
-        spring_collider c[2] = {unit_box, unit_box}; /* the floor ends at x = 0, and the wall begins there, at y = 0 */
-        c[0].at[0] = -c[0].half[0];
+    for (int k = 0; k < 460; k++) {
+        const bool enters = k < 60;
+        const double radius = k % 2 && !enters ? random_log(1e-5, 1e-2) : 0, dt = enters ? frame / (1 << k % 3) : frame;
+        const double g[3] = {enters ? 3 : k % 3 ? 0.5 : 0, -gravity, 0}, bound = enters ? 1e4 * EPS : 64 * EPS;
+        const double x[3] = {enters ? -0.2 : -random_log(1e-3, 0.5), enters ? random_uniform(0.1, 1) : radius, 0},
+                     v[3] = {enters ? random_uniform(1, 8) : random_log(0.05, 5), 0, random_uniform(-0.2, 0.2)};
+        spring_collider c[2] = {unit_box, unit_box}; /* the top of the floor is y = 0, and the wall begins at x = 0 */
+        double now[3], u[3];
+        c[0].at[0] = (!enters ? 0 : in_double ? 1e-7 : 1e-4) - c[0].half[0];
         c[0].at[1] = -c[0].half[1];
-        c[1].half[1] = c[1].at[1] = 2;
+        c[1].half[1] = 2, c[1].at[1] = enters ? 0 : 2;
         c[1].at[0] = c[1].half[0];
-        spring_scene *s = ball_at(x, v, g, radius, 2);
-        double now[3];
-        set(s, c, 2);
-        run(s, with_contacts[k % method_count], frame, 120);
-        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
-        CHECK(now[1] >= radius - 64 * EPS && now[1] <= radius + 1024 * EPS && now[0] <= 64 * EPS - radius,
+        end_of(ball_at(x, v, g, radius, 2), c, 2, with_contacts[k % method_count], dt, (uint64_t)(1.5 / dt), now, u);
+        CHECK(now[1] >= radius - bound && now[1] <= radius + fmax(bound, 1024 * EPS) && now[0] <= bound - radius,
               "it lies on the floor, at the wall or before it");
-        free(s);
     }
 }
 
@@ -2253,11 +1982,9 @@ static void wall_on_a_floor(void)
 static void corner_of_planes(void)
 {
     for (int k = 0; k < 2000; k++) {
-        double phi[3], axis[3][3], rate[3], at[3], g[3], x[3], v[3], now[3];
-        random_unit(phi, 3);
-        for (int a = 0; a < 3; a++)
-            turn(phi, unit_box.axis[a], axis[a]);
+        double axis[3][3], rate[3], at[3], g[3], x[3], v[3], now[3], u[3];
         spring_collider c[3] = {{.shape = SPRING_PLANE}, {.shape = SPRING_PLANE}, unit_box};
+        random_axes(axis);
         memcpy(c[0].axis[0], axis[0], sizeof axis[0]);
         memcpy(c[1].axis[0], axis[2], sizeof axis[2]);
         memcpy(c[2].axis, axis, sizeof axis);
@@ -2267,46 +1994,15 @@ static void corner_of_planes(void)
             g[a] = -gravity * axis[1][a];
             x[a] = at[a] + 0.01 * (axis[0][a] + axis[1][a] + axis[2][a]);
             v[a] = rate[a] - axis[0][a] - axis[2][a];
-            for (int i = 0; i < 3; i++) {
-                c[i].at[a] = at[a];
-                c[i].velocity[a] = rate[a];
-            }
+            for (int i = 0; i < 3; i++)
+                c[i].at[a] = at[a], c[i].velocity[a] = rate[a];
             /* the edges of the floor touch the planes */
             c[2].at[a] += c[2].half[0] * axis[0][a] - c[2].half[1] * axis[1][a] + c[2].half[2] * axis[2][a];
         }
-        spring_scene *s = ball_at(x, v, g, 0, 3);
-        set(s, c, 3);
-        run(s, SPRING_LEAPFROG, frame, 60);
-        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+        end_of(particle_at(x, v, g, 3), c, 3, SPRING_LEAPFROG, frame, 60, now, u);
         for (int a = 0; a < 3; a++)
-            CHECK(fabs(now[a] - at[a] - spring_scene_time(s) * rate[a]) <= 64 * EPS * 30, "in the corner, to the skin");
-        free(s);
+            CHECK(fabs(now[a] - at[a] - 60 * frame * rate[a]) <= 64 * EPS * 30, "in the corner, to the skin");
     }
-}
-
-/* A particle that slides over the seam of two boxes keeps its velocity, wherever it is at the start of a step, and whichever
-   box is the first. */
-static void slide_over_a_seam(void)
-{
-    const double size = 2 * (unit_box.half[0] + unit_box.half[1] + unit_box.half[2]), skin = 32 * EPS * size;
-    double worst = 0;
-    for (int k = 0; k < 400; k++) {
-        const double dt = frame / 8, way = k % 2 ? 1 : -1, g[3] = {0, -gravity, 0}, v[3] = {way, 0, 0};
-        const double x[3] = {skin * random_uniform(-2, 2) - 20 * dt * way, 0, 0.1};
-        spring_collider c[2] = {unit_box, unit_box};
-        for (int i = 0; i < 2; i++) {
-            c[i].at[0] = (i == k / 2 % 2 ? 1 : -1) * c[i].half[0];
-            c[i].at[1] = -c[i].half[1];
-        }
-        spring_scene *s = particle_at(x, v, g, 2);
-        double now[3], u[3];
-        set(s, c, 2);
-        run(s, SPRING_LEAPFROG, dt, 40);
-        get(s, now, u);
-        worst = fmax(worst, fmax(fabs(u[0] - v[0]), fabs(u[1])));
-        free(s);
-    }
-    CHECK_BELOW(worst, 64 * EPS * size / (frame / 8), "change of velocity: the skin in a step");
 }
 
 /* A wall stands on a floor, and particles are pressed into the corner. When the wall jumps forward, they are moved out
@@ -2318,90 +2014,24 @@ static void wall_that_jumps(void)
         const double jump = jumps[k / 4], r = k % 4 > 1 ? 0.01 : 0, g[3] = {-10, -gravity, random_uniform(-1, 1)};
         const double x[3] = {0.1, r + 0.05, 0}, none[3] = {0};
         spring_collider c[2] = {unit_box, unit_box};
+        double now[3], v[3];
         c[0].at[1] = -c[0].half[1];
         c[0].half[0] = c[0].half[2] = c[1].half[2] = 5;
         if (k % 2)
-            c[0] = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+            c[0] = ground;
         c[1].at[0] = -c[1].half[0];
         c[1].at[1] = c[1].half[1];
-        const spring_scene_def def = {.particles = 1,
-                                      .position = x,
-                                      .velocity = none,
-                                      .mass_all = 0.3,
-                                      .gravity = {g[0], g[1], g[2]},
-                                      .colliders = 2,
-                                      .particle_radius = r};
-        spring_scene *s = scene_of(&def);
-        double now[3], v[3];
+        spring_scene *s = ball_at(x, none, g, r, 2);
         set(s, c, 2);
         run(s, SPRING_LEAPFROG, frame / 8, 200);
         c[1].at[0] += jump;
-        set(s, c, 2);
-        run(s, SPRING_LEAPFROG, frame / 8, 20);
-        get(s, now, v);
+        end_of(s, c, 2, SPRING_LEAPFROG, frame / 8, 20, now, v);
         CHECK(now[1] > r - 1e3 * EPS && now[0] > jump + r - 1e3 * EPS, "on the floor, before the wall");
-        free(s);
     }
-}
-
-/* A particle starts on the surface, where four boxes of a floor meet, and slides away. */
-static void start_on_a_seam(void)
-{
-    for (int k = 0; k < 100; k++) {
-        const double x[3] = {0}, g[3] = {0, -gravity, 0};
-        const double v[3] = {k % 3 ? random_uniform(-1, 1) : 0, 0, k % 3 != 1 ? random_uniform(-1, 1) : 0};
-        spring_collider c[4];
-        for (int i = 0; i < 4; i++) {
-            c[i] = unit_box;
-            c[i].at[0] = (i % 2 ? 1 : -1) * c[i].half[0];
-            c[i].at[1] = -c[i].half[1];
-            c[i].at[2] = (i / 2 ? 1 : -1) * c[i].half[2];
-        }
-        spring_scene *s = particle_at(x, v, g, 4);
-        double now[3];
-        set(s, c, 4);
-        run(s, with_contacts[k % method_count], frame, 60);
-        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
-        for (int a = 0; a < 3; a++)
-            CHECK(fabs(now[a] - v[a] * spring_scene_time(s)) <= 64 * EPS * 8, "uniform motion, to the skin");
-        free(s);
-    }
-}
-
-/* A particle falls on the seam of two boxes of a turned floor, and bounces: it moves along the normal alone. */
-static void fall_on_a_seam(void)
-{
-    double sideways = 0;
-    for (int k = 0; k < 2000; k++) {
-        const double phi[3] = {random_uniform(-3, 3), random_uniform(-3, 3), random_uniform(-3, 3)}, none[3] = {0};
-        const double height = random_uniform(0.5, 2), across = random_uniform(-0.5, 0.5), far = random_log(0.1, 30);
-        double axis[3][3], x[3], g[3], now[3], v[3];
-        spring_collider c[2] = {unit_box, unit_box};
-        for (int i = 0; i < 3; i++)
-            turn(phi, unit_box.axis[i], axis[i]);
-        for (int a = 0; a < 3; a++) {
-            g[a] = -gravity * axis[1][a];
-            x[a] = far * axis[2][a] + height * axis[1][a] + across * axis[0][a] + (a == 0 ? far : 0);
-            for (int i = 0; i < 2; i++) {
-                for (int b = 0; b < 3; b++)
-                    c[i].axis[b][a] = axis[b][a];
-                c[i].at[a] = (far + (i ? 2 : -2)) * axis[2][a] - 0.1 * axis[1][a] + (a == 0 ? far : 0);
-                c[i].restitution = (k % 3) / 2.;
-            }
-        }
-        spring_scene *s = particle_at(x, none, g, 2);
-        set(s, c, 2);
-        run(s, with_contacts[k % method_count], frame / 4, 200);
-        get(s, now, v);
-        const double fall = sqrt(2 * gravity * height);
-        sideways = fmax(sideways, fmax(fabs(dot(v, axis[0])), fabs(dot(v, axis[2]))) / (fall * (1 + far)));
-        free(s);
-    }
-    CHECK_BELOW(sideways, 256 * EPS, "speed along the floor, in units of the impact and of the coordinates: 200 steps");
 }
 
 /* Particles slide on a plate into the wedge under a ball that sits in it, and are pressed into the plate by more than half
-   of its thickness. Then fast particles bounce many times in a step between thin walls. */
+   of its thickness. */
 static void thin_plates(void)
 {
     for (int k = 0; k < 1000; k++) {
@@ -2413,65 +2043,47 @@ static void thin_plates(void)
         c[0].at[1] = -half;
         c[0].restitution = c[1].restitution = k % 4 ? 0 : random_uniform(0, 1);
         double now[3], speed[3];
-        spring_scene *s = particle_at(x, v, g, 2);
-        set(s, c, 2);
-        run(s, with_contacts[k % method_count], random_log(1. / 960, frame), 60);
-        get(s, now, speed);
+        end_of(particle_at(x, v, g, 2), c, 2, with_contacts[k % method_count], random_log(1. / 960, frame), 60, now,
+               speed);
         CHECK(now[1] > -half || fabs(now[0]) > unit_box.half[0] || fabs(now[2]) > unit_box.half[2],
               "a particle in a wedge is not pressed through the plate");
-        free(s);
     }
-    for (int k = 0; k < 400; k++) {
-        const double reach = random_uniform(0.3, 1), half = 1e-3, fastest = random_log(10, 500), none[3] = {0};
+}
+
+/* Fast particles bounce many times in a step between thin walls, or, in a lift that rises, between two planes. */
+static void thin_walls(void)
+{
+    for (int k = 0; k < 600; k++) {
+        const bool lift = k % 3 == 0;
+        const double reach = lift ? 0.02 : random_uniform(0.3, 1), half = 1e-3, rises = random_uniform(-3, 3),
+                     fastest = lift ? random_log(3, 50) : random_log(10, 500), none[3] = {0};
+        const double g[3] = {0, lift && k % 2 ? -gravity : 0, 0};
         spring_collider c[6];
         double x[3], v[3], now[3], speed[3];
         for (int i = 0; i < 6; i++) {
             c[i] = unit_box;
-            c[i].restitution = k % 2 ? 1 : random_uniform(0, 1);
             for (int a = 0; a < 3; a++)
                 c[i].half[a] = a == i / 2 ? half : reach + 2 * half;
             c[i].at[i / 2] = (i % 2 ? 1 : -1) * (reach + half);
+            c[i].velocity[1] = rises;
+            c[i].restitution = lift || k % 2 ? 1 : random_uniform(0, 1);
         }
         for (int a = 0; a < 3; a++) {
             x[a] = random_uniform(-0.9, 0.9) * reach;
-            v[a] = random_uniform(-1, 1) * fastest;
+            v[a] = lift ? a == 0 ? fastest : 0 : random_uniform(-1, 1) * fastest;
         }
-        spring_scene *s = particle_at(x, v, none, 6);
-        set(s, c, 6);
-        run(s, with_contacts[k % method_count], frame, 30);
-        get(s, now, speed);
-        for (int a = 0; a < 3; a++)
-            CHECK(fabs(now[a]) <= reach + 32 * EPS, "a particle that bounces often in a step stays between the walls");
-        free(s);
-    }
-}
-
-/* A marble bounces many times in a step between the walls of a lift, which rises. */
-static void bounces_in_a_lift(void)
-{
-    for (int k = 0; k < 200; k++) {
-        const double g[3] = {0, k % 2 ? -gravity : 0, 0}, rises = random_uniform(-3, 3), half = 0.01, wide = 0.02,
-                     x[3] = {random_uniform(-0.9, 0.9) * wide, k % 4 < 2 ? 0 : 0.01, 0},
-                     v[3] = {random_log(3, 50), rises, 0};
-        spring_collider c[3] = {
-            unit_box, {.shape = SPRING_PLANE, .axis = {{1, 0, 0}}}, {.shape = SPRING_PLANE, .axis = {{-1, 0, 0}}}};
-        c[0].half[1] = half;
-        c[0].at[1] = -half;
-        c[1].at[0] = -wide;
-        c[2].at[0] = wide;
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 2 && lift; i++) {
+            const double side = i ? 1 : -1;
+            c[i] = (spring_collider){.shape = SPRING_PLANE, .at = {side * reach}, .axis = {{-side}}, .restitution = 1};
             c[i].velocity[1] = rises;
-            c[i].restitution = 1;
         }
-        spring_scene *s = particle_at(x, v, g, 3);
-        set(s, c, 3);
-        for (int n = 1; n <= 60; n++) {
-            double now[3], speed[3];
-            run(s, with_contacts[k % method_count], frame, 1);
-            get(s, now, speed);
-            CHECK(fabs(now[0]) <= wide + 64 * EPS && now[1] >= rises * n * frame - 64 * EPS * 10, "inside the lift");
-        }
-        free(s);
+        x[1] = lift ? k % 4 < 2 ? -reach : -reach / 2 : x[1];
+        v[1] += rises;
+        end_of(particle_at(x, v, lift ? g : none, 6), c, lift ? 3 : 6, with_contacts[k % method_count], frame, 30, now,
+               speed);
+        now[1] = lift ? fmin(0, now[1] - 30 * frame * rises) : now[1] - 30 * frame * rises; /* a lift has no ceiling */
+        for (int a = 0; a < 3; a++)
+            CHECK(fabs(now[a]) <= reach + 64 * EPS * 5, "between the walls");
     }
 }
 
@@ -2491,15 +2103,13 @@ static void ball_on_an_edge(void)
         c[1].velocity[1] = -falls;
         spring_scene *s = particle_at(x, none, g, 2);
         set(s, c, 2);
-        double before[3], now[3], v[3], way[3];
+        double before[3], now[3], v[3];
         for (int n = 0; n < 30; n++) {
             get(s, before, v);
             const double speed = length(v);
             run(s, with_contacts[k % method_count], frame, 1);
             get(s, now, v);
-            for (int a = 0; a < 3; a++)
-                way[a] = now[a] - before[a];
-            farthest = fmax(farthest, length(way) - frame * (falls + speed + length(v)));
+            farthest = fmax(farthest, distance(now, before) - frame * (falls + speed + length(v)));
         }
         free(s);
     }
@@ -2509,8 +2119,8 @@ static void ball_on_an_edge(void)
 /* Colliders that wait far away for their use do not change how a particle rests on a box. */
 static void waiting_colliders(void)
 {
-    const double x[3] = {0}, v[3] = {0}, g[3] = {0, -gravity, 0};
-    double alone[3], now[3], speed[3];
+    const double x[3] = {0}, g[3] = {0, -gravity, 0};
+    double now[2][3], speed[3];
     for (int k = 0; k < 4; k++) {
         spring_collider c[2] = {unit_box, unit_box};
         c[0].at[1] = -unit_box.half[1];
@@ -2519,14 +2129,9 @@ static void waiting_colliders(void)
         c[1].axis[0][1] = c[1].shape == SPRING_PLANE ? 1 : 0;
         c[1].radius = 1;
         c[1].at[1] = c[1].to[1] = -1e5;
-        for (uint32_t count = 1; count <= 2; count++) {
-            spring_scene *s = particle_at(x, v, g, 2);
-            set(s, c, count);
-            run(s, SPRING_LEAPFROG, frame, 10);
-            get(s, count == 1 ? alone : now, speed);
-            free(s);
-        }
-        CHECK_BITS(now[1], alone[1], "on the box");
+        for (uint32_t i = 0; i < 2; i++)
+            end_of(particle_at(x, x, g, 2), c, 1 + i, SPRING_LEAPFROG, frame, 10, now[i], speed);
+        CHECK_BITS(now[1][1], now[0][1], "on the box");
     }
 }
 
@@ -2541,8 +2146,11 @@ static void boxes_on_the_ground(void)
         const double skin = waits ? 0 : 33 * EPS * (away * (fabs(cos(angle)) + sin(angle)) + 4 * 0.5);
         spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}}, unit_box};
         if (k % 4 > 1)
-            c[0] =
-                (spring_collider){.shape = SPRING_CUSTOM, .gap = level, .thickness = random_log(1, 1e9), .bound = 50};
+            c[0] = (spring_collider){.shape = SPRING_CUSTOM,
+                                     .gap = gaps_of_faces,
+                                     .user = &level,
+                                     .thickness = random_log(1, 1e9),
+                                     .bound = 50};
         if (c[0].shape == SPRING_CUSTOM && !waits)
             c[0].bound = 0;
         c[0].friction = c[1].friction = k % 5 ? random_uniform(0, 1) : 0;
@@ -2596,7 +2204,7 @@ static void carried_far_out(void)
     }
 }
 
-/* Two particles on a damped link, with the same velocity v, which changes in a step of 0.01 s with the plane y = 0. */
+/* Two particles on a damped link, with the same velocity v, which changes in a step of 0.01 s with a collider. */
 static void step_of_pair(const double x[3], double v[3], const double g[3], const spring_collider *c, double dt_G,
                          double impulse[3])
 {
@@ -2604,17 +2212,11 @@ static void step_of_pair(const double x[3], double v[3], const double g[3], cons
     const double dt = 0.01, both[6] = {x[0], x[1], x[2], x[0], x[1], x[2] + 0.1},
                  velocity[6] = {v[0], v[1], v[2], v[0], v[1], v[2]};
     const spring_link link = {.b = 1, .rest = 0.1, .stiffness = 100, .damping = dt_G * mass / (2 * dt)};
-    spring_scene_def def = {.particles = 2,
-                            .links = 1,
-                            .link = &link,
-                            .position = both,
-                            .velocity = velocity,
-                            .mass_all = mass,
-                            .gravity = {g[0], g[1], g[2]},
-                            .colliders = 1};
-    spring_scene *s = scene_of(&def);
+    spring_scene_def def = falling(2, both, velocity, mass);
+    def.links = 1, def.link = &link;
+    memcpy(def.gravity, g, sizeof def.gravity);
+    spring_scene *s = scene_with(&def, c);
     spring_impulse by;
-    set(s, c, 1);
     run(s, SPRING_LEAPFROG, dt, 1);
     spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
     spring_scene_impulses(s, &by, 0, 1);
@@ -2622,14 +2224,18 @@ static void step_of_pair(const double x[3], double v[3], const double g[3], cons
     free(s);
 }
 
+static spring_collider random_ground(void)
+{
+    spring_collider c = ground;
+    c.restitution = random_uniform(0, 1), c.friction = random_uniform(0, 1);
+    return c;
+}
+
 /* Damping shortens a bounce and its friction: friction only brakes, and is at most the coefficient times the load. */
 static void damped_bounces(void)
 {
     for (int k = 0; k < 200; k++) {
-        const spring_collider c = {.shape = SPRING_PLANE,
-                                   .axis = {{0, 1, 0}},
-                                   .restitution = random_uniform(0, 1),
-                                   .friction = random_uniform(0, 1)};
+        const spring_collider c = random_ground();
         const double dt_G = random_log(0.5, 1000), slope = random_log(1e-5, 0.3), fall = random_uniform(0.5, 3);
         const double g[3] = {gravity * sin(slope), -gravity * cos(slope), 0}, speed = k % 2 ? random_log(1e-4, 3) : 0;
         const double x[3] = {0, fall * random_uniform(0.001, 0.009), 0};
@@ -2649,16 +2255,12 @@ static void damped_bounces(void)
 static void damped_pair_leaves(void)
 {
     for (int k = 0; k < 100; k++) {
-        const spring_collider c = {.shape = SPRING_PLANE,
-                                   .axis = {{0, 1, 0}},
-                                   .restitution = random_uniform(0, 1),
-                                   .friction = random_uniform(0, 1)};
+        const spring_collider c = random_ground();
         const double x[3] = {0, k % 2 ? -random_log(1e-4, 0.1) : 0, 0}, none[3] = {0},
                      before[3] = {1, random_log(0.01, 3), 0};
         double v[3] = {before[0], before[1], before[2]}, impulse[3];
         step_of_pair(x, v, none, &c, random_log(0.5, 1000), impulse);
-        for (int a = 0; a < 3; a++)
-            CHECK_BELOW(fabs(v[a] - before[a]), 64 * EPS, "its velocity");
+        CHECK_BELOW(distance(v, before), 64 * EPS, "its velocity");
     }
 }
 
@@ -2666,21 +2268,18 @@ static void damped_pair_leaves(void)
 static void fastest_bounce(void)
 {
     for (int k = 0; k < 400; k++) {
-        const spring_collider c = {.shape = SPRING_PLANE,
-                                   .axis = {{0, 1, 0}},
-                                   .restitution = random_uniform(0, 1),
-                                   .friction = random_uniform(0, 2)};
+        spring_collider c = random_ground();
+        c.friction *= 2;
         const double y = random_uniform(0, 0.02), x[2][3] = {{0, y, 0}, {0.3, y + random_uniform(-0.4, 0.4), 0}};
         const double v[2][3] = {{random_uniform(-5, 5), random_uniform(-8, 0), 0},
                                 {random_uniform(-5, 5), random_uniform(-8, 3), 0}};
         const spring_link link = {
             .b = 1, .rest = hypot(0.3, x[1][1] - y), .stiffness = 100, .damping = random_log(100, 1e4)};
-        spring_scene_def def = {
-            .particles = 2, .links = 1, .link = &link, .position = x[0], .velocity = v[0], .colliders = 1};
+        spring_scene_def def = falling(2, x[0], v[0], 1);
+        def.gravity[1] = 0, def.links = 1, def.link = &link;
         double fastest = 0, after[6];
         for (int limited = 0; limited < 3; limited++) {
-            spring_scene *s = scene_of(&def);
-            set(s, &c, 1);
+            spring_scene *s = scene_with(&def, &c);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1) == (limited < 2 ? SPRING_OK : SPRING_EUNSTABLE),
                   "the velocity after the step is compared");
             spring_scene_get(s, SPRING_VELOCITY, after, 0, 0, 2);
@@ -2706,96 +2305,55 @@ static void distant_floor(void)
             if (i > 0)
                 link[i - 1] = (spring_link){i - 1, i, size * hypot(1, 0.01), 100, damping, 0};
         }
+        spring_scene_def def = falling(n, x[0], v[0], 1);
+        def.gravity[1] = 0, def.links = n - 1, def.link = link;
         for (int floor = 0; floor < 2; floor++) {
-            spring_scene_def def = {.particles = n,
-                                    .links = n - 1,
-                                    .link = link,
-                                    .position = x[0],
-                                    .velocity = v[0],
-                                    .mass_all = 1,
-                                    .colliders = 1};
-            const spring_collider c = {
-                .shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .at = {0, floor ? 0 : -1e4, 0}, .friction = 0.5};
-            spring_scene *s = scene_of(&def);
-            set(s, &c, 1);
+            spring_collider c = ground;
+            c.at[1] = floor ? 0 : -1e4, c.friction = 0.5;
+            spring_scene *s = scene_with(&def, &c);
             run(s, SPRING_LEAPFROG, dt, 1);
             spring_scene_get(s, SPRING_VELOCITY, end[floor][0], 0, 0, n);
             free(s);
         }
         for (int i = 0; i < n; i++)
-            for (int a = 0; a < 3; a++)
-                CHECK_CLOSE(end[1][i][a], end[0][i][a], 1e4 * EPS, "its velocity");
+            CHECK_BELOW(distance(end[1][i], end[0][i]), 1e4 * EPS, "its velocity");
     }
-}
-
-/* The angle between the faces of the function below. */
-static double fold_angle;
-
-/* Two half-spaces, y < 0 and y < x tan(angle): one contact for each. */
-static uint32_t fold(void *user, const double p[3], double gap[3], double n[3][3])
-{
-    (void)user;
-    const double c = cos(fold_angle), s = sin(fold_angle);
-    gap[0] = p[1];
-    gap[1] = c * p[1] - s * p[0];
-    memcpy(n[0], (double[]){0, 1, 0}, sizeof n[0]);
-    memcpy(n[1], (double[]){-s, c, 0}, sizeof n[1]);
-    return 2;
 }
 
 /* A particle slides without friction or gravity through a fold of two faces: it loses the velocity into the second. */
 static void folds(void)
 {
     for (int k = 0; k < 60; k++) {
-        fold_angle = random_log(0.01, 1.2);
-        const double r = 0.08, speed = random_uniform(0.5, 5), none[3] = {0}, dt = random_uniform(0.5, 1.5) / 480;
-        const double x[3] = {-0.3 * speed, r, 0}, v[3] = {speed, 0, 0};
-        const spring_collider c = {.shape = SPRING_CUSTOM, .gap = fold, .thickness = 1};
-        spring_scene *s = ball_at(x, v, none, r, 1);
-        double now[3];
-        set(s, &c, 1);
-        run(s, SPRING_LEAPFROG, dt, 480);
-        spring_scene_get(s, SPRING_VELOCITY, now, 0, 0, 1);
-        CHECK_CLOSE(hypot(now[0], now[1]), speed * cos(fold_angle), 1e3 * EPS * speed, "v cos(angle)");
-        free(s);
+        const double angle = random_log(0.01, 1.2), r = 0.08, speed = random_uniform(0.5, 5), none[3] = {0};
+        const double x[3] = {-0.3 * speed, r, 0}, v[3] = {speed, 0, 0}, dt = random_uniform(0.5, 1.5) / 480;
+        faces fold = {2, {{0, 1, 0}, {-sin(angle), cos(angle), 0}}};
+        const spring_collider c = {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .user = &fold, .thickness = 1};
+        double now[3], u[3];
+        end_of(ball_at(x, v, none, r, 1), &c, 1, SPRING_LEAPFROG, dt, 480, now, u);
+        CHECK_CLOSE(hypot(u[0], u[1]), speed * cos(angle), 1e3 * EPS * speed, "v cos(angle)");
     }
 }
 
 /* Where a heavily damped block is after 0.8 s [m], which slides sideways on a slope. */
 static double place_on_slope(double dt)
 {
-    const double slope = 0.3, stiffness = 50, mass = 0.01, side = 0.1, damping = 0.5;
-    double x[24], v[24] = {0}, sum = 0;
+    const double slope = 0.3, stiffness = 50, side = 0.1, damping = 0.5;
+    double x[8][3], v[8][3] = {{0}}, sum = 0;
     spring_link link[28];
-    spring_scene_def def = {.particles = 8,
-                            .position = x,
-                            .velocity = v,
-                            .mass_all = mass,
-                            .link = link,
-                            .gravity = {0, -gravity, 0},
-                            .colliders = 1};
+    spring_scene_def def = falling(8, x[0], v[0], 0.01);
+    def.link = link;
     for (uint32_t a = 0; a < 8; a++) {
-        const double along = side * (a & 1), up = side * (a >> 1 & 1);
-        memcpy(&x[3 * a],
-               (double[]){cos(slope) * along - sin(slope) * up, sin(slope) * along + cos(slope) * up, side * (a >> 2)},
-               3 * sizeof *x);
-        v[3 * a + 2] = 1;
+        turn((double[]){0, 0, slope}, (double[]){side * (a & 1), side * (a >> 1 & 1), side * (a >> 2)}, x[a]);
+        v[a][2] = 1;
         for (uint32_t b = 0; b < a; b++)
-            link[def.links++] = (spring_link){
-                b,
-                a,
-                hypot(hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1]), x[3 * a + 2] - x[3 * b + 2]),
-                stiffness,
-                damping,
-                0};
+            link[def.links++] = (spring_link){b, a, distance(x[a], x[b]), stiffness, damping, 0};
     }
     const spring_collider c = {.shape = SPRING_PLANE, .axis = {{-sin(slope), cos(slope), 0}}, .friction = 0.1};
-    spring_scene *s = scene_of(&def);
-    set(s, &c, 1);
+    spring_scene *s = scene_with(&def, &c);
     run(s, SPRING_LEAPFROG, dt, (uint64_t)(0.8 / dt + 0.5));
-    spring_scene_get(s, SPRING_POSITION, x, 0, 0, 8);
+    spring_scene_get(s, SPRING_POSITION, x[0], 0, 0, 8);
     for (int a = 0; a < 8; a++)
-        sum += x[3 * a + 2] / 8;
+        sum += x[a][2] / 8;
     free(s);
     return sum;
 }
@@ -2818,23 +2376,16 @@ static void heavy_body_on_feet(void)
         const spring_link link[3] = {{0, 1, 1.6, 2e6, 0.03 * sqrt(2 * 2e6 * foot), 0},
                                      {0, 2, 1.1 * hypot(0.9, 0.7), 4e4, damping, 0},
                                      {1, 2, 1.1 * hypot(0.7, 0.7), 4e4, damping, 0}};
-        const spring_scene_def def = {.particles = 3,
-                                      .links = 3,
-                                      .position = x,
-                                      .mass = mass,
-                                      .link = link,
-                                      .gravity = {0, -gravity, 0},
-                                      .colliders = 1,
-                                      .particle_radius = 0.3};
-        const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction[k / 18]};
-        spring_scene *s = scene_of(&def);
-        set(s, &c, 1);
+        spring_scene_def def = falling(3, x, NULL, 0);
+        def.mass = mass, def.links = 3, def.link = link, def.particle_radius = (scalar)0.3;
+        spring_collider c = ground;
+        c.friction = friction[k / 18];
+        spring_scene *s = scene_with(&def, &c);
         const double dt = steps[k / 6 % 3] * spring_scene_stable_step(s, SPRING_LEAPFROG);
         double least = INFINITY, rise = 0, fall = 0;
         for (int i = 0; i * dt < 20; i++) {
             run(s, SPRING_LEAPFROG, dt, 1);
-            const spring_scene_energies e = spring_scene_energy(s);
-            const double now = e.kinetic + e.elastic + e.gravity;
+            const double now = total_energy(s);
             fall = i == 0 ? now : fall;
             least = fmin(least, now);
             rise = fmax(rise, now - least);
@@ -2849,51 +2400,41 @@ static void heavy_body_on_feet(void)
    fall on a slope or slide into a wall. Directions of links are frozen during a step, so energy may rise a little. */
 static void damped_bodies_fall(void)
 {
+    enum { largest = 8 };
     double mean[2] = {0}; /* without and with restitution */
     const int bodies = 300;
     for (int i = 0; i < bodies; i++) {
-        enum { largest = 8 };
         const uint32_t n = 4 + (uint32_t)random_uniform(0, 4.99);
         const double spread = random_log(1, 100), ratio = random_log(0.3, 1000), stiffness = random_log(100, 1e5);
         const double slope = i % 2 ? random_uniform(-0.4, 0.4) : 0, speed = random_uniform(0, 3);
-        double x[3 * largest], v[3 * largest] = {0}, mass[largest];
+        double x[largest][3], v[largest][3] = {{0}}, mass[largest];
         spring_link link[largest * largest];
-        spring_scene_def def = {.particles = n,
-                                .position = x,
-                                .velocity = v,
-                                .mass = mass,
-                                .link = link,
-                                .gravity = {0, -gravity, 0},
-                                .colliders = 2};
+        spring_scene_def def = falling(n, x[0], v[0], 0);
+        def.mass = mass, def.link = link, def.colliders = i % 3 == 0 ? 2 : 1;
         for (uint32_t a = 0; a < n; a++) {
             mass[a] = random_log(1, spread);
-            v[3 * a] = speed;
+            v[a][0] = speed;
             for (uint32_t k = 0; k < 3; k++)
-                x[3 * a + k] = random_uniform(-0.5, 0.5) + (k == 1 ? 1.2 : 0);
+                x[a][k] = random_uniform(-0.5, 0.5) + (k == 1 ? 1.2 : 0);
             for (uint32_t b = 0; b < a; b++) {
-                const double length =
-                    hypot(hypot(x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1]), x[3 * a + 2] - x[3 * b + 2]);
                 const double reduced = mass[a] * mass[b] / (mass[a] + mass[b]);
-                link[def.links++] = (spring_link){b, a, length, stiffness, 2 * ratio * sqrt(stiffness * reduced), 0};
+                link[def.links++] =
+                    (spring_link){b, a, distance(x[a], x[b]), stiffness, 2 * ratio * sqrt(stiffness * reduced), 0};
             }
         }
         const double friction = random_uniform(0, 1), restitution = i % 4 < 2 ? 0 : random_uniform(0, 0.8);
         spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{sin(slope), cos(slope), 0}}},
                                 {.shape = SPRING_PLANE, .axis = {{-1, 0, 0}}, .at = {2, 0, 0}}};
-        for (int k = 0; k < 2; k++) {
-            c[k].friction = friction;
-            c[k].restitution = restitution;
-        }
-        spring_scene *s = scene_of(&def);
-        set(s, c, i % 3 == 0 ? 2 : 1);
+        for (int k = 0; k < 2; k++)
+            c[k].friction = friction, c[k].restitution = restitution;
+        spring_scene *s = scene_with(&def, c);
         const double dt = random_uniform(0.3, 0.9) * spring_scene_stable_step(s, SPRING_LEAPFROG);
         double least = INFINITY, rise = 0, kinetic = 0;
         for (int k = 0; k * dt < 4; k++) {
             run(s, SPRING_LEAPFROG, dt, 1);
-            const spring_scene_energies e = spring_scene_energy(s);
-            least = fmin(least, e.kinetic + e.elastic + e.gravity);
-            rise = fmax(rise, e.kinetic + e.elastic + e.gravity - least);
-            kinetic = fmax(kinetic, e.kinetic);
+            least = fmin(least, total_energy(s));
+            rise = fmax(rise, total_energy(s) - least);
+            kinetic = fmax(kinetic, spring_scene_energy(s).kinetic);
         }
         mean[restitution > 0] += 2 * rise / kinetic / bodies;
         free(s);
@@ -2968,7 +2509,8 @@ static void saved_bodies(void)
 {
     const double x[3] = {0.7, 1, -0.9}, none[3] = {0}, g[3] = {0, -gravity, 0};
     spring_scene *s = particle_at(x, none, g, 2), *other = particle_at(none, none, none, 2);
-    spring_collider c[2] = {unit_box, {.shape = SPRING_CUSTOM, .gap = valley, .thickness = 0.1, .friction = 0.1}};
+    spring_collider c[2] = {unit_box, {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .thickness = 0.1}};
+    c[1].user = &valley, c[1].friction = 0.1;
     c[0].at[1] = -5;
     c[0].acceleration[1] = 0.3;
     c[0].spin_acceleration[2] = 0.2;
@@ -2985,7 +2527,7 @@ static void saved_bodies(void)
     set(other, wrong, 2);
     CHECK(spring_scene_load(other, saved, bytes) == SPRING_EINVAL, "a custom body in another place");
     const spring_collider right[2] = {{.shape = SPRING_SPHERE, .radius = 1},
-                                      {.shape = SPRING_CUSTOM, .gap = valley, .thickness = 3}};
+                                      {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .user = &valley, .thickness = 3}};
     set(other, right, 2);
     CHECK(spring_scene_load(other, saved, bytes) == SPRING_OK, "all but the function is in the state");
     run(s, SPRING_LEAPFROG, 1. / 480, 500);
@@ -3002,17 +2544,13 @@ static const test tests[] = {
     {"heavy body on feet", heavy_body_on_feet},
     {"damped block slides sideways", damped_block_slides_sideways},
     {"floor of boxes", floor_of_boxes},
-    {"floor at a wall", floor_at_a_wall},
     {"room of boxes", room_of_boxes},
     {"room of planes", room_of_planes},
     {"wall on a floor", wall_on_a_floor},
     {"corner of planes", corner_of_planes},
-    {"start on a seam", start_on_a_seam},
-    {"slide over a seam", slide_over_a_seam},
     {"wall that jumps", wall_that_jumps},
-    {"fall on a seam", fall_on_a_seam},
     {"thin plates", thin_plates},
-    {"bounces in a lift", bounces_in_a_lift},
+    {"thin walls", thin_walls},
     {"ball on an edge", ball_on_an_edge},
     {"waiting colliders", waiting_colliders},
     {"boxes on the ground", boxes_on_the_ground},
@@ -3055,7 +2593,6 @@ static const test tests[] = {
     {"friction across reversals", friction_across_reversals},
     {"grooves", grooves},
     {"wide grooves", wide_grooves},
-    {"closing grooves", closing_grooves},
     {"inside several", inside_several},
     {"between closing bodies", between_closing_bodies},
     {"crevice of round bodies", crevice_of_round_bodies},
