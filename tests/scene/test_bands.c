@@ -84,11 +84,7 @@ static void offsets_that_meet(void)
     for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
         for (uint32_t i = 0; i < most_bands * lowers; i++)
             m.link[i] = (spring_link){i % lowers, i % lowers + (i / lowers + 1) * widths[w], 0.6, 2.7, 0, 0};
-        m.def = (spring_scene_def){.axes = 1,
-                                   .particles = lowers + most_bands * widths[w],
-                                   .links = most_bands * lowers,
-                                   .position = position,
-                                   .link = m.link};
+        m.def = joined(1, lowers + most_bands * widths[w], position, NULL, most_bands * lowers, m.link);
         check_layout(&m, most_bands, 0, "each has its band");
     }
 }

@@ -96,13 +96,10 @@ SPRING_INLINE double gap_of(const spring_collider *c, double time, const double 
 /* Free particles that fall on a collider. */
 SPRING_INLINE spring_scene_def falling(size_t particles, const double *x, const double *v, double mass)
 {
-    return (spring_scene_def){.particles = particles,
-                              .position = x,
-                              .velocity = v,
-                              .mass_all = mass,
-                              .gravity = {0, -gravity, 0},
-                              .colliders = 1,
-                              .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4 | 1u << SPRING_SYMPLECTIC_EULER};
+    spring_scene_def def = joined(3, particles, x, v, 0, NULL);
+    def.mass_all = mass, def.gravity[1] = -gravity, def.colliders = 1;
+    def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4 | 1u << SPRING_SYMPLECTIC_EULER;
+    return def;
 }
 
 SPRING_INLINE void set(spring_scene *s, const spring_collider *c, uint32_t count)

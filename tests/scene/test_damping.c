@@ -19,34 +19,19 @@ static void build_stiff(model *m, uint32_t side, bool rope, double stiff, double
                            .spacing = 1.0 / (side - 1),
                            .families = rope ? SPRING_GRID_STRUCTURAL : 7,
                            .stiffness = 1};
-    size_t particles, links;
-    spring_grid_size(&g, &particles, &links);
-    CHECK(particles <= most && links <= most_links, "fits into a model");
-    spring_grid_fill(&g, m->position, m->pinned, m->link);
-    memset(m->velocity, 0, sizeof m->velocity);
-    for (size_t i = 0; i < particles; i++) {
-        m->mass[i] = rope ? 1.0 / 32 : 1.0 / (double)particles;
+    const double mass = rope ? 1.0 / 32 : 1.0 / (side * side);
+    build_grid(m, &g, mass);
+    for (size_t i = 0; i < m->def.particles; i++) {
         m->pinned[i] = i == 0 || (!rope && i == side - 1);
         m->position[3 * i + 2] += m->pinned[i] ? 0 : 0.02 * g.spacing * random_uniform(-0.5, 0.5);
         for (int a = 0; a < 3 && how == IN_MOTION && !m->pinned[i]; a++)
             m->velocity[3 * i + (size_t)a] = 0.4 * sin(3 * m->position[3 * i] + 2 * m->position[3 * i + 1] + a);
     }
-    const double mass = m->mass[0];
     if (rope)
-        m->mass[particles - 1] *= 100;
-    m->def = (spring_scene_def){.particles = particles,
-                                .links = links,
-                                .position = m->position,
-                                .velocity = m->velocity,
-                                .mass = m->mass,
-                                .pinned = m->pinned,
-                                .link = m->link,
-                                .gravity = {0, 0, -9.81},
-                                .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
-    spring_scene *s = scene_of(&m->def);
-    const double limit = spring_scene_stable_step(s, SPRING_LEAPFROG); /* 2/sqrt(L) at stiffness 1 */
-    free(s);
-    for (size_t j = 0; j < links; j++) {
+        m->mass[m->def.particles - 1] *= 100;
+    m->def.gravity[2] = -9.81, m->def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4;
+    const double limit = stable_step_of(&m->def, SPRING_LEAPFROG); /* 2/sqrt(L) at stiffness 1 */
+    for (size_t j = 0; j < m->def.links; j++) {
         m->link[j].stiffness = pow(stiff / frame * limit / 2, 2);
         m->link[j].damping = damped * mass / frame;
     }
@@ -421,9 +406,7 @@ static void soften(void)
         for (size_t i = 0; i < m.def.particles && (m.def.flags & SPRING_SCENE_EDITABLE) == 0; i++)
             m.mass[i] = pinned_in(&m.def, i) ? -1 : m.mass[i]; /* which is not used */
         before = m;
-        spring_scene *s = scene_of(&m.def);
-        const double stable = spring_scene_stable_step(s, SPRING_LEAPFROG);
-        free(s);
+        const double stable = stable_step_of(&m.def, SPRING_LEAPFROG);
         if (!(stable < INFINITY))
             continue;
         const double fraction = random_uniform(0.1, 1), dt = random_log(0.1, 30) * stable;
@@ -436,9 +419,7 @@ static void soften(void)
                   "lower stiffness, and nothing else");
             lowered = lowered || now->stiffness < was->stiffness;
         }
-        s = scene_of(&m.def);
-        const double now = spring_scene_stable_step(s, SPRING_LEAPFROG);
-        free(s);
+        const double now = stable_step_of(&m.def, SPRING_LEAPFROG);
         CHECK(dt <= fraction * now, "stable");
         CHECK(!lowered || now <= 1.4 * dt / fraction, "and no softer than needed");
         CHECK(lowered || now == stable, "nothing to do");

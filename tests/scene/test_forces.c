@@ -145,17 +145,8 @@ static double gain_per_step(spring_method m, double rate, double omega, uint64_t
     const double x[] = {0, 0, 1, 0.2}, v[] = {0, 0, 0.1, -0.3}, mass = gyro_mass_permille / 1000.0;
     const uint8_t pinned[] = {1, 0};
     const spring_link link = {0, 1, 0, mass * omega * omega, 0, 0};
-    const spring_scene_def def = {.axes = 2,
-                                  .methods = 1u << m,
-                                  .particles = 2,
-                                  .links = omega > 0,
-                                  .position = x,
-                                  .velocity = v,
-                                  .mass_all = mass,
-                                  .pinned = pinned,
-                                  .link = &link,
-                                  .force = magnetic,
-                                  .user = &rate};
+    spring_scene_def def = joined(2, 2, x, v, omega > 0, &link);
+    def.methods = 1u << m, def.mass_all = mass, def.pinned = pinned, def.force = magnetic, def.user = &rate;
     spring_scene *s = scene_of(&def);
     double energy[2];
     for (int half = 0; half < 2; half++) {
@@ -208,14 +199,8 @@ static int frames_at_rest(double offset, double damping)
         x[3 * i + 1] = x[3 * i + 4] - 0.1 - (i + 1) * mass * 9.81 / stiffness;
     for (size_t i = 0; i < n; i++)
         x[3 * i] += offset, x[3 * i + 1] += offset;
-    const spring_scene_def def = {.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY,
-                                  .particles = n,
-                                  .links = n - 1,
-                                  .position = x,
-                                  .mass_all = mass,
-                                  .pinned = pinned,
-                                  .link = link,
-                                  .gravity = {0, -9.81, 0}};
+    spring_scene_def def = joined(3, n, x, NULL, n - 1, link);
+    def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, def.mass_all = mass, def.pinned = pinned, def.gravity[1] = -9.81;
     spring_scene *s = scene_of(&def);
     int frames = 0;
     for (int i = 0; i < 600; i++) {
@@ -269,14 +254,8 @@ static void rest_of_cloth(void)
         spring_grid_fill(&sheet, x, pinned, link);
         for (int a = 0; a < 3 * n; a++)
             x[a] += offset;
-        const spring_scene_def def = {.particles = n,
-                                      .links = links,
-                                      .position = x,
-                                      .mass_all = mass,
-                                      .pinned = pinned,
-                                      .link = link,
-                                      .gravity = {0, 9.81, 0},
-                                      .drag = drag_rate * mass};
+        spring_scene_def def = joined(3, n, x, NULL, links, link);
+        def.mass_all = mass, def.pinned = pinned, def.gravity[1] = 9.81, def.drag = drag_rate * mass;
         spring_scene *s = scene_of(&def);
         const double dt = random_uniform(0.4, 0.9) * spring_scene_stable_step(s, SPRING_LEAPFROG);
         const double omega = 2 / spring_scene_stable_step(s, SPRING_LEAPFROG);
@@ -335,14 +314,9 @@ static double bounce_error(int n, double t, uint32_t strangers)
     x[3 * 1 + 1] = -0.5;
     pinned[1] = 0;
     const spring_link link = {0, 1, 1, k, 0, 0};
-    const spring_scene_def def = {.flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
-                                  .particles = 2 + strangers,
-                                  .links = 1,
-                                  .position = x,
-                                  .mass_all = mass,
-                                  .pinned = pinned,
-                                  .link = &link,
-                                  .gravity = {0, -g, 0}};
+    spring_scene_def def = joined(3, 2 + strangers, x, NULL, 1, &link);
+    def.flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    def.mass_all = mass, def.pinned = pinned, def.gravity[1] = -g;
     spring_scene *s = scene_of(&def);
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, t / n, (uint64_t)n) == SPRING_OK, "stable");
     double now[3], speed[3], y, v;

@@ -227,25 +227,12 @@ static void build_thing(model *m, const thing *what, unsigned how)
 {
     spring_grid g = what->grid;
     g.damping = how & LINK_DAMPING ? 4.3 : 0;
-    const uint32_t axes = g.height ? 1 : g.axes == 0 ? 3 : g.axes;
+    const uint32_t axes = g.axes = g.height ? 1 : g.axes == 0 ? 3 : g.axes;
     const double small = sizeof(scalar) == 4 ? 1e-2 : 1e-6; /* [m/s] */
-    size_t particles = 0, links = 0;
-    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles <= most && links <= most_links, "fits");
-    spring_grid_fill(&g, m->position, m->pinned, m->link);
-    for (size_t i = 0; i < particles; i++) {
-        m->mass[i] = 0.7;
-        for (uint32_t a = 0; a < axes; a++)
-            m->velocity[i * axes + a] = m->pinned[i] ? 0 : random_uniform(-small, small);
-    }
-    m->def = (spring_scene_def){.axes = axes,
-                                .particles = particles,
-                                .links = links,
-                                .position = m->position,
-                                .velocity = m->velocity,
-                                .mass = m->mass,
-                                .pinned = m->pinned,
-                                .link = m->link,
-                                .drag = how & WITH_DRAG ? 1.9 : 0};
+    build_grid(m, &g, 0.7);
+    for (size_t i = 0; i < m->def.particles * axes; i++)
+        m->velocity[i] = m->pinned[i / axes] ? 0 : random_uniform(-small, small);
+    m->def.drag = how & WITH_DRAG ? 1.9 : 0;
     use_all_methods(&m->def);
 }
 
@@ -278,9 +265,7 @@ static void stable_below(void)
             build_thing(&m, &things[w], how);
             const method_list all = methods_of(m.def);
             for (const spring_method *method = all.at; *method != no_method; method++) {
-                spring_scene *s = scene_of(&m.def);
-                const double step = spring_scene_stable_step(s, *method);
-                free(s);
+                const double step = stable_step_of(&m.def, *method);
                 CHECK(step > 0 || (never_stable(*method) && !(how & WITH_DRAG)),
                       "only a method that is never stable without damping has none, and only without drag");
                 if (step > 0)
@@ -296,14 +281,8 @@ static void stable_with_any_masses(void)
     static model m;
     for (int round = 0; round < 500; round++) {
         const double damping = round % 4 == 0 ? random_log(0.01, 10) : 0;
-        m.def = (spring_scene_def){.axes = 1,
-                                   .particles = round % 2 == 0 ? 3 : 4,
-                                   .position = m.position,
-                                   .velocity = m.velocity,
-                                   .mass = m.mass,
-                                   .pinned = m.pinned,
-                                   .link = m.link,
-                                   .drag = random_log(1, 100)};
+        m.def = joined(1, round % 2 == 0 ? 3 : 4, m.position, m.velocity, 0, m.link);
+        m.def.mass = m.mass, m.def.pinned = m.pinned, m.def.drag = random_log(1, 100);
         for (uint32_t i = 0; i < m.def.particles; i++) {
             m.position[i] = i;
             m.velocity[i] = i > 0 ? random_uniform(-1e-2, 1e-2) : 0;
@@ -316,9 +295,7 @@ static void stable_with_any_masses(void)
         use_all_methods(&m.def);
         const method_list all = methods_of(m.def);
         for (const spring_method *method = all.at; *method != no_method; method++) {
-            spring_scene *s = scene_of(&m.def);
-            const double step = spring_scene_stable_step(s, *method);
-            free(s);
+            const double step = stable_step_of(&m.def, *method);
             if (!never_stable(*method)) /* the others' steps are so short that 2000 may be less than a period */
                 CHECK_BELOW(growth(&m, *method, 0.99 * step, 4000), 1.2,
                             "modes of constant amplitude, in step and out of step, seen for 2000 steps twice");
@@ -350,9 +327,7 @@ static void not_much_too_small(void)
             build_thing(&m, &things[w], how);
             const method_list all = methods_of(m.def);
             for (const spring_method *method = all.at; *method != no_method; method++) {
-                spring_scene *s = scene_of(&m.def);
-                const double step = spring_scene_stable_step(s, *method);
-                free(s);
+                const double step = stable_step_of(&m.def, *method);
                 if (step == 0)
                     continue;
                 const double limit = measured_limit(&m, *method, step);
@@ -480,19 +455,9 @@ static double gain_in_a_minute(model *m, const large_motion *l)
                            .stiffness = l->stiffness,
                            .families = l->families,
                            .pinned = SPRING_GRID_FIRST_X};
-    size_t particles = 0, links = 0;
-    spring_grid_size(&g, &particles, &links);
-    CHECK(particles <= most && links <= most_links, "fits");
-    spring_grid_fill(&g, m->position, m->pinned, m->link);
-    m->def = (spring_scene_def){.flags = l->flags | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
-                                .particles = particles,
-                                .links = links,
-                                .position = m->position,
-                                .mass_all = mass,
-                                .pinned = m->pinned,
-                                .link = m->link,
-                                .gravity = {0, -9.81, 0.3},
-                                .drag = l->drag_per_mass * mass};
+    build_grid(m, &g, mass);
+    m->def.flags = l->flags | SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    m->def.gravity[1] = -9.81, m->def.gravity[2] = 0.3, m->def.drag = l->drag_per_mass * mass;
     spring_scene *s = scene_of(&m->def);
     const double dt = l->fraction * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
     const uint64_t steps = (uint64_t)ceil(0.1 / dt);

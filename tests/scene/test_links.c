@@ -329,15 +329,8 @@ static void whirl(void)
             const uint8_t pinned[] = {1, 0};
             const spring_link link = {0, 1, 0, stiffness, damping, 0};
             const spring_weighted_link w = {{0, 1}, {-1, 1}, 0, stiffness, damping};
-            const spring_scene_def def = {.particles = 2,
-                                          .links = !weighted,
-                                          .weighted_links = (size_t)weighted,
-                                          .position = x,
-                                          .velocity = v,
-                                          .pinned = pinned,
-                                          .mass_all = mass,
-                                          .link = &link,
-                                          .weighted_link = &w};
+            spring_scene_def def = joined(3, 2, x, v, !weighted, &link);
+            def.pinned = pinned, def.mass_all = mass, def.weighted_links = (size_t)weighted, def.weighted_link = &w;
             spring_scene *s = scene_of(&def);
             const double start = total_energy(s), dt = (heavy ? 0.9 : 0.02) / omega; /* heavy: an exponential kick */
             const uint64_t steps = (uint64_t)(10 / (omega * dt));

@@ -841,13 +841,8 @@ static void too_stiff_for_masses(void)
 {
     const double x[12] = {0};
     const spring_weighted_link weighted = {.particle = {0, 1, 2}, .weight = {1, -2, 1}, .stiffness = 3};
-    const spring_scene_def def = {.axes = 2,
-                                  .flags = SPRING_SCENE_EDITABLE,
-                                  .particles = 6,
-                                  .position = x,
-                                  .mass_all = 0.5,
-                                  .weighted_links = 1,
-                                  .weighted_link = &weighted};
+    spring_scene_def def = joined(2, 6, x, NULL, 0, NULL);
+    def.flags = SPRING_SCENE_EDITABLE, def.mass_all = 0.5, def.weighted_links = 1, def.weighted_link = &weighted;
     const block b = block_of(&def);
     const saved y = save(b.s);
     const block kept = copy_of(&b);

@@ -80,6 +80,23 @@ SPRING_INLINE spring_scene *scene_of(const spring_scene_def *def)
     return memory;
 }
 
+/* Particles on two or three axes, joined by links. */
+SPRING_INLINE spring_scene_def joined(uint32_t axes, size_t particles, const double *x, const double *v, size_t links,
+                                      const spring_link *link)
+{
+    return (spring_scene_def){
+        .axes = axes, .particles = particles, .position = x, .velocity = v, .links = links, .link = link};
+}
+
+/* The stable step of a scene of this definition. */
+SPRING_INLINE double stable_step_of(const spring_scene_def *def, spring_method method)
+{
+    spring_scene *s = scene_of(def);
+    const double step = spring_scene_stable_step(s, method);
+    free(s);
+    return step;
+}
+
 /* ---------------------------------------------------------------------------------------------------------- models */
 
 enum { most = 3100, most_links = 20000, most_weighted = 4000 }; /* particles and links of a model */
@@ -124,6 +141,19 @@ SPRING_INLINE void shuffle(spring_link *link, size_t count)
         if (random_bits() % 2)
             reverse(&link[i - 1]);
     }
+}
+
+/* A grid at its place and at rest. All particles have the same mass. */
+SPRING_INLINE void build_grid(model *m, const spring_grid *g, double mass)
+{
+    size_t particles = 0, links = 0;
+    CHECK(spring_grid_size(g, &particles, &links) == SPRING_OK && particles <= most && links <= most_links, "fits");
+    spring_grid_fill(g, m->position, m->pinned, m->link);
+    memset(m->velocity, 0, sizeof m->velocity);
+    for (size_t i = 0; i < particles; i++)
+        m->mass[i] = mass;
+    m->def = joined(g->height ? 1 : g->axes, particles, m->position, m->velocity, links, m->link);
+    m->def.pinned = m->pinned, m->def.mass = m->mass, m->def.mass_all = mass;
 }
 
 /* The links of a grid with all families between particles that lie near the grid, on so many axes. */

@@ -344,15 +344,9 @@ static void masses_of_the_freed(void)
         {NULL, 0, {1, 1, 1}}, {NULL, 0.7, {0.7, 0.7, 0.7}}, {mass, 0.7, {0.7, 0.4, 0.7}}, {mass, 0, {1, 0.4, 1}}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++)
         for (size_t i = 0; i < 3; i++) {
-            const spring_scene_def def = {.axes = 1,
-                                          .flags = SPRING_SCENE_EDITABLE,
-                                          .particles = 3,
-                                          .links = 2,
-                                          .position = x,
-                                          .mass = cases[c].mass,
-                                          .mass_all = cases[c].all,
-                                          .pinned = pinned,
-                                          .link = link};
+            spring_scene_def def = joined(1, 3, x, NULL, 2, link);
+            def.flags = SPRING_SCENE_EDITABLE, def.pinned = pinned;
+            def.mass = cases[c].mass, def.mass_all = cases[c].all;
             spring_scene *s = scene_of(&def);
             const double speed[] = {2};
             spring_scene_set(s, SPRING_VELOCITY, speed, 0, i, 1);
@@ -428,15 +422,9 @@ static void refused_calls(void)
         if (i < links)
             link[i] = (spring_link){i, i + 1, 0.5, i == 2 ? huge : 3, i == 4 ? huge : 0, 0}, limit[i] = 1;
     }
-    spring_scene_def def = {.flags = SPRING_SCENE_EDITABLE,
-                            .methods = 1u << SPRING_LEAPFROG,
-                            .particles = n,
-                            .links = links,
-                            .position = x,
-                            .mass = mass,
-                            .pinned = pinned,
-                            .link = link,
-                            .colliders = 1};
+    spring_scene_def def = joined(3, n, x, NULL, links, link);
+    def.flags = SPRING_SCENE_EDITABLE, def.methods = 1u << SPRING_LEAPFROG, def.colliders = 1;
+    def.mass = mass, def.pinned = pinned;
     spring_scene *s = scene_of(&def);
     spring_scene_bytes(&def, &bytes);
     void *before = malloc(bytes);
@@ -590,16 +578,9 @@ static void sizes_and_options(void)
     const double x[12] = {0};
     const spring_link link[2] = {{0, 1, 0, 2, 0, 0}, {1, 2, 0, 2, 0, 0}};
     const spring_weighted_link weighted = {.particle = {0, 1, 2}, .weight = {1, -2, 1}, .stiffness = 3};
-    const spring_scene_def def = {.axes = 2,
-                                  .flags = SPRING_SCENE_EDITABLE,
-                                  .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
-                                  .particles = 6,
-                                  .links = 2,
-                                  .position = x,
-                                  .link = link,
-                                  .weighted_links = 1,
-                                  .weighted_link = &weighted,
-                                  .colliders = 5};
+    spring_scene_def def = joined(2, 6, x, NULL, 2, link);
+    def.flags = SPRING_SCENE_EDITABLE, def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4;
+    def.weighted_links = 1, def.weighted_link = &weighted, def.colliders = 5;
     spring_scene *s = scene_of(&def);
     const spring_scene_info is = spring_scene_describe(s), none = spring_scene_describe(NULL);
     CHECK(is.axes == 2 && is.flags == def.flags && is.methods == def.methods && is.particles == 6 && is.links == 2 &&
@@ -616,13 +597,8 @@ static void too_light_for_weighted(void)
 {
     const double x[12] = {0}, large = (double)SCALAR_MAX / 1e6, light = 1e-9, fine = 0.5;
     const spring_weighted_link weighted = {.particle = {0, 1, 2}, .weight = {1, -2, 1}, .stiffness = large};
-    const spring_scene_def def = {.axes = 2,
-                                  .flags = SPRING_SCENE_EDITABLE,
-                                  .particles = 6,
-                                  .position = x,
-                                  .mass_all = 2,
-                                  .weighted_links = 1,
-                                  .weighted_link = &weighted};
+    spring_scene_def def = joined(2, 6, x, NULL, 0, NULL);
+    def.flags = SPRING_SCENE_EDITABLE, def.mass_all = 2, def.weighted_links = 1, def.weighted_link = &weighted;
     spring_scene *s = scene_of(&def);
     CHECK(spring_scene_set_mass(s, 1, 1, &light) == SPRING_EINVAL && spring_scene_set_mass(s, 1, 1, &fine) == SPRING_OK,
           "of a particle of the link");
@@ -649,11 +625,8 @@ static void weights_that_underflow(void)
                 other.weight[j] *= sizes[k];
             if (!edited)
                 link[5] = other;
-            const spring_scene_def def = {.flags = SPRING_SCENE_EDITABLE,
-                                          .particles = particles,
-                                          .position = x,
-                                          .weighted_links = particles - 2,
-                                          .weighted_link = link};
+            spring_scene_def def = joined(3, particles, x, NULL, 0, NULL);
+            def.flags = SPRING_SCENE_EDITABLE, def.weighted_links = particles - 2, def.weighted_link = link;
             spring_scene *s = scene_of(&def);
             CHECK(!edited || spring_scene_set_weighted_links(s, 5, 1, &other) == SPRING_OK, "small weights");
             size_t bytes;

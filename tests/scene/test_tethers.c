@@ -43,14 +43,9 @@ static void build_random(size_t particles, bool own_tethers)
         w.weighted[i] = (spring_weighted_link){
             .particle = {first, first + 1, first + 2}, .weight = {0.25, -1, 0.75}, .stiffness = 1 + below(8)};
     }
-    m->def = (spring_scene_def){.particles = particles,
-                                .links = links,
-                                .position = m->position,
-                                .mass = m->mass,
-                                .pinned = m->pinned,
-                                .link = m->link,
-                                .weighted_links = weighted,
-                                .weighted_link = w.weighted};
+    m->def = joined(3, particles, m->position, NULL, links, m->link);
+    m->def.mass = m->mass, m->def.pinned = m->pinned;
+    m->def.weighted_links = weighted, m->def.weighted_link = w.weighted;
 }
 
 /* Appends tethers to the links of the model; returns their number. */
@@ -211,20 +206,11 @@ static stretch settle(const spring_scene_def *def, size_t links, double dt)
     return most_of;
 }
 
-static void build_grid(const spring_grid *g, double mass)
+static void build_falling(const spring_grid *g, double mass)
 {
-    size_t particles, links;
-    CHECK(spring_grid_size(g, &particles, &links) == SPRING_OK && particles <= room && links <= most_links, "fits");
-    spring_grid_fill(g, w.m.position, w.m.pinned, w.m.link);
-    w.m.def = (spring_scene_def){.particles = particles,
-                                 .links = links,
-                                 .position = w.m.position,
-                                 .mass_all = mass,
-                                 .pinned = w.m.pinned,
-                                 .link = w.m.link,
-                                 .gravity = {0, -9.81, 0},
-                                 .drag = 2 * mass,
-                                 .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY};
+    build_grid(&w.m, g, mass);
+    CHECK(w.m.def.particles <= room, "fits");
+    w.m.def.gravity[1] = -9.81, w.m.def.drag = 2 * mass, w.m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
 /* A rope of 40 links, as stiff as 4 steps per frame allow with half of the stable step. */
@@ -234,7 +220,7 @@ static void a_rope_keeps_its_length(void)
     const spring_grid g = {.count = {1, 41}, .spacing = 0.05, .stiffness = stiffness};
     double longer[2];
     for (int tethers = 0; tethers < 2; tethers++) {
-        build_grid(&g, mass);
+        build_falling(&g, mass);
         w.m.pinned[0] = 1;
         for (size_t i = 0; i < 41; i++)
             w.m.position[3 * i + 1] *= -1;
@@ -256,7 +242,7 @@ static void a_cloth_keeps_its_shape(void)
     stretch s[2];
     for (int tethers = 0; tethers < 2; tethers++) {
         g.stiffness = tethers ? 200 : 20000; /* the stiff cloth is the reference solution */
-        build_grid(&g, mass);
+        build_falling(&g, mass);
         w.m.pinned[0] = w.m.pinned[24] = 1;
         for (size_t i = 0; i < 625; i++)
             w.m.position[3 * i + 1] *= -1;
@@ -277,7 +263,7 @@ static void freed_anchors(void)
         const spring_grid g = {.count = {2 + below(20), 2}, .spacing = 0.1, .stiffness = 300, .damping = 0.1};
         spring_scene *s[2];
         for (int tethers = 0; tethers < 2; tethers++) {
-            build_grid(&g, 0.02);
+            build_falling(&g, 0.02);
             w.m.def.flags |= SPRING_SCENE_EDITABLE;
             memset(w.m.pinned, 0, sizeof w.m.pinned);
             w.m.pinned[0] = w.m.pinned[g.count[0]] = 1;
@@ -309,17 +295,13 @@ static void soften(void)
     unsigned too_stiff = 0, softened = 0;
     for (unsigned number = 0; number < 500; number++) {
         build_random(1 + below(number % 10 == 0 ? 650 : 40), true);
-        spring_scene *s = scene_of(&w.m.def);
-        const double stable = spring_scene_stable_step(s, SPRING_LEAPFROG);
-        free(s);
+        const double stable = stable_step_of(&w.m.def, SPRING_LEAPFROG);
         if (!(stable < INFINITY))
             continue;
         const double fraction = random_uniform(0.1, 1), dt = random_log(0.3, 3) * fraction * stable;
         spring_scene_def weighted = w.m.def;
         weighted.links = 0;
-        s = scene_of(&weighted);
-        const double limit = spring_scene_stable_step(s, SPRING_LEAPFROG);
-        free(s);
+        const double limit = stable_step_of(&weighted, SPRING_LEAPFROG);
         static model before;
         before = w.m;
         const spring_status status = spring_links_soften(&w.m.def, dt, fraction, w.m.link);
@@ -336,9 +318,7 @@ static void soften(void)
                   "lower stiffness");
             lowered |= w.m.link[i].stiffness < before.link[i].stiffness;
         }
-        s = scene_of(&w.m.def);
-        const double now = spring_scene_stable_step(s, SPRING_LEAPFROG);
-        free(s);
+        const double now = stable_step_of(&w.m.def, SPRING_LEAPFROG);
         CHECK(dt <= fraction * now, "stable");
         CHECK(lowered == (dt > fraction * stable) || fabs(dt / (fraction * stable) - 1) < 1e-3, "only where needed");
         softened += lowered;
