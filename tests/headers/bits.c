@@ -93,7 +93,7 @@ enum { particles = 7 * 5, most_links = 6 * particles };
 typedef struct sheet {
     uint32_t axes;
     size_t links;
-    double position[3 * particles], gravity[3];
+    double position[3 * particles];
     uint8_t pinned[particles];
     spring_link link[most_links + particles]; /* and tethers */
     size_t bends;
@@ -116,7 +116,7 @@ static sheet *make_sheet(uint32_t axes, bool jumbled, bool damped)
         .pinned = SPRING_GRID_FIRST_X,
     };
     memset(&s, 0, sizeof s);
-    s.axes = axes, s.gravity[0] = 0.3, s.gravity[1] = -9.81, s.gravity[2] = 0.1;
+    s.axes = axes;
     size_t nodes;
     spring_grid_size(&grid, &nodes, &s.links);
     spring_grid_fill(&grid, s.position, s.pinned, s.link);
@@ -132,6 +132,27 @@ static sheet *make_sheet(uint32_t axes, bool jumbled, bool damped)
     return &s;
 }
 
+/* The definition of a sheet, in either precision. */
+#define SHEET_DEF(type)                                          \
+    static type##_def type##_of(const sheet *s, spring_method m) \
+    {                                                            \
+        return (type##_def){.axes = s->axes,                     \
+                            .methods = 1u << m,                  \
+                            .particles = particles,              \
+                            .links = s->links,                   \
+                            .position = s->position,             \
+                            .mass_all = 0.3,                     \
+                            .pinned = s->pinned,                 \
+                            .link = s->link,                     \
+                            .weighted_links = s->bends,          \
+                            .weighted_link = s->bend,            \
+                            .gravity = {0.3, -9.81, 0.1},        \
+                            .drag = 0.07};                       \
+    }
+
+SHEET_DEF(spring_scene)
+SHEET_DEF(spring_scenef)
+
 #define SCENE_BITS(type)                                                                                               \
     static uint64_t type##_bits(const sheet *given, spring_method m, double scale)                                     \
     {                                                                                                                  \
@@ -139,19 +160,10 @@ static sheet *make_sheet(uint32_t axes, bool jumbled, bool damped)
         double position[3 * particles], out[2][3 * particles] = {{0}};                                                 \
         for (size_t i = 0; i < 3 * particles; i++)                                                                     \
             position[i] = given->position[i] * scale;                                                                  \
-        type##_def def = {.axes = given->axes,                                                                         \
-                          .methods = 1u << m,                                                                          \
-                          .particles = particles,                                                                      \
-                          .links = given->links,                                                                       \
-                          .position = position,                                                                        \
-                          .mass_all = 0.3,                                                                             \
-                          .pinned = given->pinned,                                                                     \
-                          .link = given->link,                                                                         \
-                          .weighted_links = given->bends,                                                              \
-                          .weighted_link = given->bend,                                                                \
-                          .drag = 0.07};                                                                               \
+        type##_def def = type##_of(given, m);                                                                          \
+        def.position = position;                                                                                       \
         for (int i = 0; i < 3; i++)                                                                                    \
-            def.gravity[i] = given->gravity[i] * scale;                                                                \
+            def.gravity[i] *= scale;                                                                                   \
         type *s;                                                                                                       \
         if (type##_init(memory, sizeof memory, &def, &s) != SPRING_OK || type##_advance(s, m, 1e-3, 300) != SPRING_OK) \
             return 0;                                                                                                  \
@@ -303,45 +315,36 @@ static void print_scenes(spring_method m)
 }
 
 /* Tension-only links, held forces, links that tear and are reeled in, and a scene that is moved as a whole. */
-#define SLACK_BITS(type)                                                                                          \
-    static uint64_t type##_slack_bits(const sheet *given, spring_method m)                                        \
-    {                                                                                                             \
-        static sheet s;                                                                                           \
-        s = *given;                                                                                               \
-        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                        \
-        static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                      \
-        double force[3 * particles], out[2][3 * particles] = {{0}};                                               \
-        for (int i = 0; i < 3 * particles; i++)                                                                   \
-            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                            \
-        const type##_def def = {.axes = s.axes,                                                                   \
-                                .flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE, \
-                                .methods = 1u << m,                                                               \
-                                .particles = particles,                                                           \
-                                .links = s.links,                                                                 \
-                                .position = s.position,                                                           \
-                                .mass_all = 0.3,                                                                  \
-                                .pinned = s.pinned,                                                               \
-                                .link = s.link,                                                                   \
-                                .gravity = {0.3, -9.81, 0.1},                                                     \
-                                .drag = 0.07};                                                                    \
-        type *scene;                                                                                              \
-        size_t torn = 0;                                                                                          \
-        uint32_t list[most_links] = {0};                                                                          \
-        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                      \
-            type##_set(scene, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                               \
-            type##_advance(scene, m, 1e-3, 150) != SPRING_OK ||                                                   \
-            type##_tear(scene, 1.8, NULL, list, most_links, &torn) != SPRING_OK)                                  \
-            return 0;                                                                                             \
-        for (size_t i = 0; i < s.links; i++)                                                                      \
-            s.link[i].rest *= 0.75;                                                                               \
-        if (type##_set_links(scene, 0, 9, s.link) != SPRING_OK || type##_transform(scene, map) != SPRING_OK ||    \
-            type##_advance(scene, m, 1e-3, 150) != SPRING_OK)                                                     \
-            return 0;                                                                                             \
-        type##_get(scene, SPRING_POSITION, out[0], 0, 0, particles);                                              \
-        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, particles);                                              \
-        const spring_scene_energies e = type##_energy(scene);                                                     \
-        const double more[] = {e.kinetic, e.elastic, (double)torn, (double)list[1], type##_tension(scene, 5)};    \
-        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                         \
+#define SLACK_BITS(type)                                                                                       \
+    static uint64_t type##_slack_bits(const sheet *given, spring_method m)                                     \
+    {                                                                                                          \
+        static sheet s;                                                                                        \
+        s = *given;                                                                                            \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                     \
+        static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                   \
+        double force[3 * particles], out[2][3 * particles] = {{0}};                                            \
+        for (int i = 0; i < 3 * particles; i++)                                                                \
+            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                         \
+        type##_def def = type##_of(&s, m);                                                                     \
+        def.flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE;                   \
+        type *scene;                                                                                           \
+        size_t torn = 0;                                                                                       \
+        uint32_t list[most_links] = {0};                                                                       \
+        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                   \
+            type##_set(scene, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                            \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK ||                                                \
+            type##_tear(scene, 1.8, NULL, list, most_links, &torn) != SPRING_OK)                               \
+            return 0;                                                                                          \
+        for (size_t i = 0; i < s.links; i++)                                                                   \
+            s.link[i].rest *= 0.75;                                                                            \
+        if (type##_set_links(scene, 0, 9, s.link) != SPRING_OK || type##_transform(scene, map) != SPRING_OK || \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK)                                                  \
+            return 0;                                                                                          \
+        type##_get(scene, SPRING_POSITION, out[0], 0, 0, particles);                                           \
+        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, particles);                                           \
+        const spring_scene_energies e = type##_energy(scene);                                                  \
+        const double more[] = {e.kinetic, e.elastic, (double)torn, (double)list[1], type##_tension(scene, 5)}; \
+        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                      \
     }
 
 SLACK_BITS(spring_scene)
@@ -363,8 +366,6 @@ static void print_slack_scenes(spring_method m)
 #define CONTACT_BITS(type)                                                                                             \
     static uint64_t type##_contact_bits(const sheet *given, spring_method m, size_t used)                              \
     {                                                                                                                  \
-        static sheet s;                                                                                                \
-        s = *given;                                                                                                    \
         static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                             \
         static const spring_collider c[4] = {                                                                          \
             {.shape = SPRING_PLANE, .at = {0, -0.2, 0}, .axis = {{0.6, 0.8, 0}}, .friction = 0.4, .restitution = 0.3}, \
@@ -390,18 +391,9 @@ static void print_slack_scenes(spring_method m)
              .restitution = 0.8}};                                                                                     \
         double out[2][3 * particles] = {{0}};                                                                          \
         uint32_t mask[particles] = {0}, ever[particles] = {0};                                                         \
-        const type##_def def = {.axes = s.axes,                                                                        \
-                                .methods = 1u << m,                                                                    \
-                                .particles = used,                                                                     \
-                                .links = used < particles ? 0 : s.links,                                               \
-                                .position = s.position,                                                                \
-                                .mass_all = 0.3,                                                                       \
-                                .pinned = s.pinned,                                                                    \
-                                .link = s.link,                                                                        \
-                                .gravity = {0.3, -9.81, 0.1},                                                          \
-                                .drag = 0.07,                                                                          \
-                                .colliders = 4,                                                                        \
-                                .particle_radius = 0.01};                                                              \
+        type##_def def = type##_of(given, m);                                                                          \
+        def.particles = used, def.links = used < particles ? 0 : def.links;                                            \
+        def.colliders = 4, def.particle_radius = 0.01;                                                                 \
         type *scene;                                                                                                   \
         if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                           \
             type##_set_colliders(scene, c, 4) != SPRING_OK)                                                            \
@@ -446,17 +438,9 @@ static void print_contacts(spring_method m)
 #define STATE_BITS(type)                                                                                              \
     static type *type##_stated(void *memory, size_t bytes, const sheet *s)                                            \
     {                                                                                                                 \
-        const type##_def def = {.axes = s->axes,                                                                      \
-                                .flags = SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE,                                 \
-                                .particles = particles,                                                               \
-                                .links = s->links,                                                                    \
-                                .position = s->position,                                                              \
-                                .mass_all = 0.3,                                                                      \
-                                .pinned = s->pinned,                                                                  \
-                                .link = s->link,                                                                      \
-                                .gravity = {0.3, -9.81, 0.1},                                                         \
-                                .drag = 0.07,                                                                         \
-                                .colliders = s->axes > 1 ? 9 : 0};                                                    \
+        type##_def def = type##_of(s, SPRING_LEAPFROG);                                                               \
+        def.flags = SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE, def.methods = 0;                                     \
+        def.colliders = s->axes > 1 ? 9 : 0;                                                                          \
         type *scene = NULL;                                                                                           \
         return type##_init(memory, bytes, &def, &scene) == SPRING_OK ? scene : NULL;                                  \
     }                                                                                                                 \
