@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Colliders as bodies: rigid motion, static friction on them, friction across reversals, grooves, impulses, masks, radii,
    and bodies of any form. */
+#include "contact/closed_forms.h"
 #include "test_contact.h"
 
 #include <stdio.h>
@@ -21,10 +22,10 @@ typedef struct hit {
    or friction. Exact: after the impact it flies (e = 1), or slides out along the face, xi'' = omega^2 xi (e = 0). */
 static hit bat(spring_method m, double omega, double b, double e, double dt, int every)
 {
-    const double x[3] = {0.32, 0.24, 0}, none[3] = {0}, r = 0.4, theta = atan2(0.24, 0.32) - asin(b / r);
+    const double x[3] = {0.32, 0.24, 0}, r = 0.4, theta = atan2(0.24, 0.32) - asin(b / r);
     const double at_hit = theta / omega, xi = sqrt(r * r - b * b), end = at_hit + (e > 0 ? 0.3 : 0.25) / omega;
     const int steps = (int)ceil(end / dt);
-    spring_scene *s = particle_at(x, none, none, 1);
+    spring_scene *s = particle_on(NULL, 1, x, none, none);
     spring_collider c = unit_box;
     c.half[0] = 0.5, c.half[1] = b, c.half[2] = 1, c.spin[2] = omega, c.restitution = e;
     hit h = {0};
@@ -75,23 +76,18 @@ static void turned_box_hits(void)
         }
 }
 
-/* A bead on a plane that turns about z through the origin: rho'' = omega^2 rho - g sin(omega t). */
+/* A bead on a plane that turns about z through the origin. */
 static void bead_on_turning_plane(void)
 {
-    const double omega = 2, rho = 0.3, speed = 2.5, end = 0.7, g[3] = {0, -gravity, 0};
-    const double x[3] = {rho, 0, 0}, v[3] = {speed, omega * rho, 0}, B = (speed - gravity / (2 * omega)) / omega;
-    const double exact =
-        rho * cosh(omega * end) + B * sinh(omega * end) + gravity / (2 * omega * omega) * sin(omega * end);
+    const double omega = 2, rho = 0.3, speed = 2.5, end = 0.7;
+    const double x[3] = {rho, 0, 0}, v[3] = {speed, omega * rho, 0};
+    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .spin = {0, 0, omega}};
     for (int m = 0; m < method_count && in_double; m++) {
         double error[2], now[3], u[3];
         for (int fine = 0; fine < 2; fine++) {
-            spring_scene *s = particle_at(x, v, g, 1);
-            set(s, &(spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .spin = {0, 0, omega}}, 1);
             const uint64_t steps = fine ? 2240 : 70;
-            run(s, with_contacts[m], end / (double)steps, steps);
-            get(s, now, u);
-            error[fine] = hypot(now[0] - exact * cos(omega * end), now[1] - exact * sin(omega * end));
-            free(s);
+            end_of(particle_on(&c, 1, x, v, down), with_contacts[m], end / (double)steps, steps, now, u);
+            error[fine] = distance_on_turning_plane(omega, rho, speed, end, now);
         }
         CHECK(log2(error[0] / error[1]) / 5 >= 1.9, "second order");
     }
@@ -100,11 +96,11 @@ static void bead_on_turning_plane(void)
 /* Static friction on a turntable of 3 rad/s, for 100 s. */
 static void turntable(void)
 {
-    const double omega = 3, x[3] = {0.5, 0, 0}, v[3] = {0, 0, -omega * 0.5}, g[3] = {0, -gravity, 0};
+    const double omega = 3, x[3] = {0.5, 0, 0}, v[3] = {0, 0, -omega * 0.5};
     for (int kind = 0; kind < 2; kind++)
         for (int n = 4; n <= 64; n *= 4)
             for (int once = 0; once < 2; once++) {
-                spring_scene *s = particle_at(x, v, g, 1);
+                spring_scene *s = particle_on(NULL, 1, x, v, down);
                 spring_collider c = unit_box;
                 c.at[1] = -0.1;
                 if (kind == 0)
@@ -131,10 +127,10 @@ static void turntable(void)
    the mean spin acceleration. */
 static void rocking_box(void)
 {
-    const double axis[3] = {0.9 / sqrt(1.06), 0, 0.5 / sqrt(1.06)}, start[3] = {0.2, 0.1, 0.1}, g[3] = {0, -gravity, 0};
+    const double axis[3] = {0.9 / sqrt(1.06), 0, 0.5 / sqrt(1.06)}, start[3] = {0.2, 0.1, 0.1};
     double v[3], now[3], u[3], slip = 0;
     cross((double[3]){0.7 * axis[0], 0, 0.7 * axis[2]}, start, v);
-    spring_scene *s = particle_at(start, v, g, 1);
+    spring_scene *s = particle_on(NULL, 1, start, v, down);
     spring_collider c = unit_box;
     c.half[0] = c.half[2] = 1, c.friction = 0.9;
     for (int f = 0; f < 1200; f++) {
@@ -159,11 +155,10 @@ static void rocking_box(void)
    per frame with velocity and acceleration. */
 static void platforms(void)
 {
-    const double none[3] = {0}, g[3] = {0, -gravity, 0};
     for (int shaken = 0; shaken < 2; shaken++)
         for (int n = 4; n <= 64; n *= 4) {
             const double v[3] = {shaken ? 2 : 0.3, 0, 0};
-            spring_scene *s = particle_at(none, v, g, 1);
+            spring_scene *s = particle_on(NULL, 1, none, v, down);
             spring_collider c = unit_box;
             c.half[0] = 100, c.friction = 0.45, c.at[1] = -0.1;
             double slip = 0, now[3], u[3];
@@ -187,8 +182,7 @@ static void platforms(void)
    spring_scene_set_colliders(), and a particle stays on it. */
 static void lift(void)
 {
-    const double none[3] = {0}, g[3] = {0, -gravity, 0};
-    spring_scene *s = particle_at(none, none, g, 1);
+    spring_scene *s = particle_on(NULL, 1, none, none, down);
     spring_collider c = unit_box;
     uint32_t count = 1, touched = 0;
     double now[3], u[3];
@@ -315,7 +309,7 @@ static void grooves(void)
     for (int i = 0; i < 5; i++)
         for (int how = 0; how <= closing; how++)
             for (int m = 0; m < method_count; m++) {
-                const double half = degrees[i] * PI / 360, none[3] = {0}, g[3] = {0, -gravity, 0};
+                const double half = degrees[i] * PI / 360;
                 const double x[3] = {how == closing ? 0 : 0.3 * sin(half), 1, 0};
                 const double toward = how == closing ? 0.02 * sin(half) : 0; /* [m/s] the corner rises by 0.02 m/s */
                 double inside = 0, now[3], v[3];
@@ -324,8 +318,7 @@ static void grooves(void)
                 for (int k = 0; k < 2; k++)
                     for (int a = 0; a < 3; a++)
                         c[k].velocity[a] = toward * c[k].axis[0][a];
-                spring_scene *s = particle_at(x, none, g, 2);
-                set(s, c, 2);
+                spring_scene *s = particle_on(c, 2, x, none, down);
                 for (int k = 1; k <= 480 * 6; k++) {
                     run(s, with_contacts[m], 1. / 480, 1);
                     get(s, now, v);
@@ -346,11 +339,10 @@ static void wide_grooves(void)
     double fastest = 0; /* in units of g dt */
     for (int i = 0; i < 60; i++) {
         const double half = random_uniform(90, 165) * PI / 360, dt = random_log(1. / 960, 1. / 60);
-        const double x[3] = {random_uniform(-0.4, 0.4), 0.5, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
+        const double x[3] = {random_uniform(-0.4, 0.4), 0.5, 0};
         spring_collider c[2];
         make_groove(half, 0, c);
-        spring_scene *s = particle_at(x, none, g, 2);
-        set(s, c, 2);
+        spring_scene *s = particle_on(c, 2, x, none, down);
         run(s, SPRING_LEAPFROG, dt, (uint64_t)(60 / dt));
         for (int k = 0; k < 200; k++) {
             double now[3], v[3];
@@ -386,7 +378,6 @@ static void inside_several(void)
                 c[k] = c[0];
         }
         double x[3], now[3], v[3], deep[2] = {0}, least = INFINITY;
-        const double none[3] = {0};
         for (int a = 0; a < 3; a++)
             x[a] = random_uniform(-0.5, 0.5);
         for (uint32_t k = 0; k < count; k++) {
@@ -397,7 +388,7 @@ static void inside_several(void)
         if (!(deep[1] > 0))
             continue;
         tried++;
-        end_of(particle_at(x, none, none, 4), c, count, with_contacts[i % 2], frame, 1, now, v);
+        end_of(particle_on(c, count, x, none, none), with_contacts[i % 2], frame, 1, now, v);
         for (uint32_t k = 0; k < count; k++)
             least = fmin(least, gap_of(&c[k], 0, now, 3));
         inside = fmax(inside, -least);
@@ -414,7 +405,7 @@ static void inside_several(void)
 static void between_closing_bodies(void)
 {
     static const double offsets[] = {0, 1e-6, 1e-4, 2e-3, 0.03};
-    const double radius = 0.25, r = 0.01, end_gap = 0.005, g[3] = {0, -gravity, 0}, none[3] = {0};
+    const double radius = 0.25, r = 0.01, end_gap = 0.005;
     const double fits = sqrt(pow(radius + r, 2) - pow(radius + end_gap - r, 2)); /* [m] from the axis */
     double farthest = 0;
     for (int i = 0; i < 5; i++)
@@ -423,9 +414,8 @@ static void between_closing_bodies(void)
             const double x[3] = {offsets[i], r, 0};
             spring_collider c[2] = {ground, {.shape = SPRING_SPHERE, .radius = radius, .friction = 0.3}};
             c[0].friction = 0.5, c[1].at[1] = radius + end_gap + 0.05, c[1].velocity[1] = -speed;
-            spring_scene *s = ball_at(x, none, g, r, 2);
+            spring_scene *s = ball_on(c, 2, x, none, down, r);
             double before[3], now[3], v[3];
-            set(s, c, 2);
             for (int n = 0; n < (int)(0.05 / speed / dt); n++) {
                 get(s, before, v);
                 run(s, SPRING_LEAPFROG, dt, 1);
@@ -450,7 +440,7 @@ static void crevice_of_round_bodies(void)
                      radius[2] = {0.2, random_uniform(0.05, 0.3)},
                      between = radius[0] + radius[1] - random_uniform(0.001, 0.05);
         const double along = (between + (pow(radius[0], 2) - pow(radius[1], 2)) / between) / 2;
-        const double x[3] = {along, 0, sqrt(pow(radius[0], 2) - along * along)}, none[3] = {0};
+        const double x[3] = {along, 0, sqrt(pow(radius[0], 2) - along * along)};
         const double pull = random_log(1, 1e5);
         const double g[3] = {pull * random_uniform(-0.3, 0.3), pull * random_uniform(-0.5, 0.5), -pull};
         spring_collider c[2] = {
@@ -462,8 +452,7 @@ static void crevice_of_round_bodies(void)
             c[0].at[1] = -1;
             c[0].to[1] = 1;
         }
-        spring_scene *s = particle_at(x, none, g, 2);
-        set(s, c, 2);
+        spring_scene *s = particle_on(c, 2, x, none, g);
         double before[3], now[3], v[3];
         for (int n = 0; n < 60; n++) {
             get(s, before, v);
@@ -485,7 +474,7 @@ static void capsules_that_stretch(void)
     const size_t cases = random_cases(2000);
     size_t hits = 0;
     for (size_t i = 0; i < cases; i++) {
-        const double dt = 1. / 240, length_0 = random_bits() % 3 == 0 ? 0 : random_uniform(-0.5, 0.5), none[3] = {0};
+        const double dt = 1. / 240, length_0 = random_bits() % 3 == 0 ? 0 : random_uniform(-0.5, 0.5);
         double along[3], x[3], now[3], v[3];
         spring_collider c = {.shape = SPRING_CAPSULE, .radius = 0.1, .friction = random_uniform(0, 1)};
         random_unit(along, 3);
@@ -497,8 +486,7 @@ static void capsules_that_stretch(void)
         }
         if (gap_of(&c, 0, x, 3) < 1e-3)
             continue;
-        spring_scene *s = particle_at(x, none, none, 1);
-        set(s, &c, 1);
+        spring_scene *s = particle_on(&c, 1, x, none, none);
         for (int k = 0; k < 8; k++) {
             uint32_t count = 1;
             run(s, with_contacts[i % 2], dt, 1);
@@ -520,7 +508,7 @@ static void closing_plates(void)
     double fastest = 0;
     for (int i = 0; i < 8; i++)
         for (int e = 0; e <= 4; e++) {
-            const double tilt = 0.04 * pow(0.1, i), x[3] = {0.01, 0, 0}, v[3] = {0, 10, 0}, none[3] = {0};
+            const double tilt = 0.04 * pow(0.1, i), x[3] = {0.01, 0, 0}, v[3] = {0, 10, 0};
             spring_collider c[2] = {unit_box, unit_box};
             double now[3], u[3];
             for (int k = 0; k < 2; k++) {
@@ -528,7 +516,7 @@ static void closing_plates(void)
                 turned_axes((double[]){0, 0, side * tilt / 2}, c[k].axis);
                 c[k].at[1] = -side * 0.11, c[k].velocity[1] = side, c[k].restitution = 0.2 * e;
             }
-            end_of(particle_at(x, v, none, 2), c, 2, SPRING_LEAPFROG, 1. / 240, 1, now, u);
+            end_of(particle_on(c, 2, x, v, none), SPRING_LEAPFROG, 1. / 240, 1, now, u);
             fastest = fmax(fastest, length(u));
         }
     CHECK_BELOW(fastest, 12, "speed: 10 m/s, and at most twice the 1 m/s of a plate by an impact");
@@ -542,7 +530,7 @@ static void spinning_ball_in_motion(void)
         const double V = 20 * moving, x[3] = {0, 1.008, 0}, v[3] = {0, V - 4, 0}, g[3] = {0, -1000, 0};
         const spring_collider c = {
             .shape = SPRING_SPHERE, .radius = 1, .spin = {0, 0, 2}, .friction = 1.4, .velocity = {0, V, 0}};
-        end_of(particle_at(x, v, g, 1), &c, 1, SPRING_LEAPFROG, 1. / 240, 1, now[moving], u);
+        end_of(particle_on(&c, 1, x, v, g), SPRING_LEAPFROG, 1. / 240, 1, now[moving], u);
     }
     CHECK_CLOSE(now[1][0], now[0][0], 64 * EPS * fabs(now[0][0]), "rounding of positions of 1 m");
 }
@@ -1191,8 +1179,8 @@ static void impulse_rules(void)
     run(s, SPRING_LEAPFROG, 0.01, 0);
     CHECK(spring_scene_impulses(s, j, 0, 1) == SPRING_OK && j[0].linear[1] == 0, "no step");
     free(s);
-    const spring_scene_def none = {.particles = 1, .position = x};
-    s = scene_of(&none);
+    const spring_scene_def bare = {.particles = 1, .position = x};
+    s = scene_of(&bare);
     CHECK(spring_scene_impulses(s, j, 0, 0) == SPRING_EDISABLED, "no colliders");
     free(s);
 }
@@ -1415,7 +1403,6 @@ static void custom_bodies(void)
 static void slide_on(spring_collider c, const double x[3], const double v[3], uint64_t steps, double out[3])
 {
     double at[3] = {x[0], x[1], x[2]}, gap[3], n[3][3], u[3];
-    const double g[3] = {0, -gravity, 0};
     for (int k = 0; k < 200; k++) {
         c.gap(c.user, at, gap, n);
         for (int a = 0; a < 3; a++)
@@ -1424,7 +1411,7 @@ static void slide_on(spring_collider c, const double x[3], const double v[3], ui
     c.gap(c.user, at, gap, n);
     for (int a = 0; a < 3; a++)
         u[a] = v[a] - dot(v, n[0]) * n[0][a];
-    end_of(particle_at(at, u, g, 1), &c, 1, SPRING_LEAPFROG, 1. / (double)steps, steps, out, u);
+    end_of(particle_on(&c, 1, at, u, down), SPRING_LEAPFROG, 1. / (double)steps, steps, out, u);
 }
 
 static void custom_order(void)
@@ -1463,8 +1450,8 @@ static faces level = {1, {{0, 1, 0}}}, floor_and_wall = {2, {{0, 1, 0}, {1, 0, 0
 /* A valley of two faces, as two contacts of one body: a particle rests in it. Gaps that are not finite are reported. */
 static void contacts_of_a_custom_body(void)
 {
-    const double x[3] = {0.1, 1, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
-    spring_scene *s = particle_at(x, none, g, 1);
+    const double x[3] = {0.1, 1, 0};
+    spring_scene *s = particle_on(NULL, 1, x, none, down);
     spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 1, .gap = gaps_of_faces, .user = &valley};
     double now[3], v[3];
     set(s, &c, 1);
@@ -1474,7 +1461,7 @@ static void contacts_of_a_custom_body(void)
     CHECK_BELOW(hypot(now[0], now[1]), 1e-4, "at the bottom");
     CHECK(spring_scene_at_rest(s, 1e-3, 1e-3), "balanced by both contacts");
     free(s);
-    s = particle_at(x, none, g, 1);
+    s = particle_on(NULL, 1, x, none, down);
     c.gap = not_finite_gap;
     set(s, &c, 1);
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1. / 480, 4800) == SPRING_ENONFINITE, "reported");
@@ -1488,14 +1475,13 @@ static void corner_of_a_custom_body(void)
 {
     for (int k = 0; k < 60; k++) {
         const double at = k % 4 ? random_log(0.1, 100) : 0, thickness = random_log(1, 1e6), speed = random_log(0.1, 10);
-        const double x[3] = {at + 0.7 * speed, 0, 0}, v[3] = {-speed, 0, 0}, g[3] = {0, -gravity, 0}, dt = 1. / 480;
+        const double x[3] = {at + 0.7 * speed, 0, 0}, v[3] = {-speed, 0, 0}, dt = 1. / 480;
         spring_collider c = {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .user = &floor_and_wall, .at = {at}};
         c.thickness = thickness;
         /* rounding errors of positions, and 1000 slops of the function, see contact.c */
         const double off = fmax(100 * EPS * (at + 1), 8e3 * DBL_EPSILON * (2 * at + 1 + thickness));
-        spring_scene *s = particle_at(x, v, g, 1);
+        spring_scene *s = particle_on(&c, 1, x, v, down);
         double now[3], w[3] = {-speed, 0, 0};
-        set(s, &c, 1);
         for (int n = 0; n < 480 && w[0] < -speed / 2; n++) {
             run(s, with_contacts[k % method_count], dt, 1);
             get(s, now, w);
@@ -1558,18 +1544,18 @@ static void links_at_an_edge(void)
 /* A wall that starts to move hits the particle that rests on it: (1 + e) V. A plate stops it. */
 static void hit_from_rest(void)
 {
-    const double x[3] = {0.3, 0.1, -0.2}, none[3] = {0}, e = 0.5, speed = 2;
+    const double x[3] = {0.3, 0.1, -0.2}, e = 0.5, speed = 2;
     spring_collider both[2] = {unit_box, unit_box};
     both[0].restitution = e, both[0].velocity[1] = speed;
     double now[3], v[3];
-    end_of(particle_at(x, none, none, 1), both, 1, SPRING_LEAPFROG, 0.01, 3, now, v);
+    end_of(particle_on(both, 1, x, none, none), SPRING_LEAPFROG, 0.01, 3, now, v);
     CHECK_CLOSE(v[1], (1 + e) * speed, 8 * EPS * speed, "the velocity after an impact");
     CHECK_CLOSE(now[1], x[1] + 0.03 * v[1], 8 * EPS, "from the start of the step");
     /* On its new path there is a thin plate, which is far from the path without the wall. */
     const double below = 0.125;
     both[1].at[1] = below + 0.001, both[1].half[1] = 0.001, both[1].restitution = e;
     const double skin = 32 * EPS * (both[1].at[1] + both[1].half[0] + both[1].half[1] + both[1].half[2]);
-    end_of(particle_at((double[]){x[0], x[1] + skin, x[2]}, none, none, 2), both, 2, SPRING_LEAPFROG, 0.01, 1, now, v);
+    end_of(particle_on(both, 2, (double[]){x[0], x[1] + skin, x[2]}, none, none), SPRING_LEAPFROG, 0.01, 1, now, v);
     CHECK(now[1] <= below + 8 * EPS, "not through the plate");
     CHECK(v[1] <= 0, "nor toward it");
 }
@@ -1723,8 +1709,8 @@ static void floor_of_boxes(void)
         }
         const uint64_t steps = (uint64_t)(fmin(1, 1.8 * size / fmax(speed, 1)) / dt);
         for (int whole = 0; whole < 2; whole++)
-            end_of(ball_at(x, v, g, radius, TILES * TILES), whole ? &plane : box, whole ? 1 : TILES * TILES, method, dt,
-                   steps, end[whole], u[whole]);
+            end_of(ball_on(whole ? &plane : box, whole ? 1 : TILES * TILES, x, v, g, radius), method, dt, steps,
+                   end[whole], u[whole]);
         for (int a = 0; a < 3; a++)
             apart[0][a] = end[0][a] - end[1][a], apart[1][a] = dt * (u[0][a] - u[1][a]);
         for (int i = 0; i < 2; i++) {
@@ -1972,7 +1958,7 @@ static void wall_on_a_floor(void)
         c[0].at[1] = -c[0].half[1];
         c[1].half[1] = 2, c[1].at[1] = enters ? 0 : 2;
         c[1].at[0] = c[1].half[0];
-        end_of(ball_at(x, v, g, radius, 2), c, 2, with_contacts[k % method_count], dt, (uint64_t)(1.5 / dt), now, u);
+        end_of(ball_on(c, 2, x, v, g, radius), with_contacts[k % method_count], dt, (uint64_t)(1.5 / dt), now, u);
         CHECK(now[1] >= radius - bound && now[1] <= radius + fmax(bound, 1024 * EPS) && now[0] <= bound - radius,
               "it lies on the floor, at the wall or before it");
     }
@@ -1999,7 +1985,7 @@ static void corner_of_planes(void)
             /* the edges of the floor touch the planes */
             c[2].at[a] += c[2].half[0] * axis[0][a] - c[2].half[1] * axis[1][a] + c[2].half[2] * axis[2][a];
         }
-        end_of(particle_at(x, v, g, 3), c, 3, SPRING_LEAPFROG, frame, 60, now, u);
+        end_of(particle_on(c, 3, x, v, g), SPRING_LEAPFROG, frame, 60, now, u);
         for (int a = 0; a < 3; a++)
             CHECK(fabs(now[a] - at[a] - 60 * frame * rate[a]) <= 64 * EPS * 30, "in the corner, to the skin");
     }
@@ -2012,7 +1998,7 @@ static void wall_that_jumps(void)
     static const double jumps[] = {1e-13, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 0.02, 0.1};
     for (size_t k = 0; k < 4 * sizeof jumps / sizeof jumps[0]; k++) {
         const double jump = jumps[k / 4], r = k % 4 > 1 ? 0.01 : 0, g[3] = {-10, -gravity, random_uniform(-1, 1)};
-        const double x[3] = {0.1, r + 0.05, 0}, none[3] = {0};
+        const double x[3] = {0.1, r + 0.05, 0};
         spring_collider c[2] = {unit_box, unit_box};
         double now[3], v[3];
         c[0].at[1] = -c[0].half[1];
@@ -2021,11 +2007,11 @@ static void wall_that_jumps(void)
             c[0] = ground;
         c[1].at[0] = -c[1].half[0];
         c[1].at[1] = c[1].half[1];
-        spring_scene *s = ball_at(x, none, g, r, 2);
-        set(s, c, 2);
+        spring_scene *s = ball_on(c, 2, x, none, g, r);
         run(s, SPRING_LEAPFROG, frame / 8, 200);
         c[1].at[0] += jump;
-        end_of(s, c, 2, SPRING_LEAPFROG, frame / 8, 20, now, v);
+        set(s, c, 2);
+        end_of(s, SPRING_LEAPFROG, frame / 8, 20, now, v);
         CHECK(now[1] > r - 1e3 * EPS && now[0] > jump + r - 1e3 * EPS, "on the floor, before the wall");
     }
 }
@@ -2036,14 +2022,13 @@ static void thin_plates(void)
 {
     for (int k = 0; k < 1000; k++) {
         const double half = random_log(5e-4, 5e-3), over = random_uniform(0.05, 0.25), thrown = random_log(1, 50),
-                     x[3] = {sqrt(0.09 - over * over) + random_uniform(0.15, 0.17), 0.001, 0}, v[3] = {-thrown, 0, 0},
-                     g[3] = {0, -gravity, 0};
+                     x[3] = {sqrt(0.09 - over * over) + random_uniform(0.15, 0.17), 0.001, 0}, v[3] = {-thrown, 0, 0};
         spring_collider c[2] = {unit_box, {.shape = SPRING_SPHERE, .at = {0, over, 0}, .radius = 0.3}};
         c[0].half[1] = half;
         c[0].at[1] = -half;
         c[0].restitution = c[1].restitution = k % 4 ? 0 : random_uniform(0, 1);
         double now[3], speed[3];
-        end_of(particle_at(x, v, g, 2), c, 2, with_contacts[k % method_count], random_log(1. / 960, frame), 60, now,
+        end_of(particle_on(c, 2, x, v, down), with_contacts[k % method_count], random_log(1. / 960, frame), 60, now,
                speed);
         CHECK(now[1] > -half || fabs(now[0]) > unit_box.half[0] || fabs(now[2]) > unit_box.half[2],
               "a particle in a wedge is not pressed through the plate");
@@ -2056,7 +2041,7 @@ static void thin_walls(void)
     for (int k = 0; k < 600; k++) {
         const bool lift = k % 3 == 0;
         const double reach = lift ? 0.02 : random_uniform(0.3, 1), half = 1e-3, rises = random_uniform(-3, 3),
-                     fastest = lift ? random_log(3, 50) : random_log(10, 500), none[3] = {0};
+                     fastest = lift ? random_log(3, 50) : random_log(10, 500);
         const double g[3] = {0, lift && k % 2 ? -gravity : 0, 0};
         spring_collider c[6];
         double x[3], v[3], now[3], speed[3];
@@ -2079,7 +2064,7 @@ static void thin_walls(void)
         }
         x[1] = lift ? k % 4 < 2 ? -reach : -reach / 2 : x[1];
         v[1] += rises;
-        end_of(particle_at(x, v, lift ? g : none, 6), c, lift ? 3 : 6, with_contacts[k % method_count], frame, 30, now,
+        end_of(particle_on(c, lift ? 3 : 6, x, v, lift ? g : none), with_contacts[k % method_count], frame, 30, now,
                speed);
         now[1] = lift ? fmin(0, now[1] - 30 * frame * rises) : now[1] - 30 * frame * rises; /* a lift has no ceiling */
         for (int a = 0; a < 3; a++)
@@ -2093,16 +2078,14 @@ static void ball_on_an_edge(void)
 {
     double farthest = 0;
     for (int k = 0; k < 2000; k++) {
-        const double x[3] = {random_uniform(1.9, 2), 0, random_uniform(-0.2, 0.2)}, g[3] = {0, -gravity, 0},
-                     none[3] = {0};
+        const double x[3] = {random_uniform(1.9, 2), 0, random_uniform(-0.2, 0.2)};
         const double half = random_log(1e-3, 0.02), falls = random_uniform(0.3, 2);
         spring_collider c[2] = {unit_box,
                                 {.shape = SPRING_SPHERE, .at = {random_uniform(1.8, 2.1), 0.4, 0}, .radius = 0.3}};
         c[0].half[1] = half;
         c[0].at[1] = -half;
         c[1].velocity[1] = -falls;
-        spring_scene *s = particle_at(x, none, g, 2);
-        set(s, c, 2);
+        spring_scene *s = particle_on(c, 2, x, none, down);
         double before[3], now[3], v[3];
         for (int n = 0; n < 30; n++) {
             get(s, before, v);
@@ -2119,7 +2102,7 @@ static void ball_on_an_edge(void)
 /* Colliders that wait far away for their use do not change how a particle rests on a box. */
 static void waiting_colliders(void)
 {
-    const double x[3] = {0}, g[3] = {0, -gravity, 0};
+    const double x[3] = {0};
     double now[2][3], speed[3];
     for (int k = 0; k < 4; k++) {
         spring_collider c[2] = {unit_box, unit_box};
@@ -2130,7 +2113,7 @@ static void waiting_colliders(void)
         c[1].radius = 1;
         c[1].at[1] = c[1].to[1] = -1e5;
         for (uint32_t i = 0; i < 2; i++)
-            end_of(particle_at(x, x, g, 2), c, 1 + i, SPRING_LEAPFROG, frame, 10, now[i], speed);
+            end_of(particle_on(c, 1 + i, x, x, down), SPRING_LEAPFROG, frame, 10, now[i], speed);
         CHECK_BITS(now[1][1], now[0][1], "on the box");
     }
 }
@@ -2141,7 +2124,7 @@ static void boxes_on_the_ground(void)
 {
     for (int k = 0; k < 200; k++) {
         const bool waits = k % 2;
-        const double away = random_log(5, 1e4), at = random_uniform(-3, 3), g[3] = {0, -gravity, 0}, none[3] = {0};
+        const double away = random_log(5, 1e4), at = random_uniform(-3, 3);
         const double radius = k % 3 ? 0 : random_uniform(0, 0.1), x[3] = {at, radius, 0}, angle = random_uniform(0, PI);
         const double skin = waits ? 0 : 33 * EPS * (away * (fabs(cos(angle)) + sin(angle)) + 4 * 0.5);
         spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}}, unit_box};
@@ -2160,8 +2143,7 @@ static void boxes_on_the_ground(void)
         if (waits)
             memcpy(c[1].at, (double[]){0, -away - 100, 0}, sizeof c[1].at);
         const double dt = random_log(1e-3, 1. / 60);
-        spring_scene *s = ball_at(x, none, g, radius, 2);
-        set(s, c, 2);
+        spring_scene *s = ball_on(c, 2, x, none, down, radius);
         for (int n = 0; n < 60; n++) {
             double now[3], v[3];
             uint32_t touches;
@@ -2180,7 +2162,7 @@ static void boxes_on_the_ground(void)
 static void carried_far_out(void)
 {
     for (int k = 0; k < 100; k++) {
-        const double far_out = random_log(1, 50), angle = random_uniform(-0.2, 0.2), g[3] = {0, -gravity, 0};
+        const double far_out = random_log(1, 50), angle = random_uniform(-0.2, 0.2);
         const double n[3] = {sin(angle), cos(angle), 0}, x[3] = {far_out, far_out, far_out};
         const double V[3] = {random_uniform(-1, 1), random_uniform(-1, 1), random_uniform(-1, 1)};
         spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{n[0], n[1], 0}}, .friction = 0.5}, unit_box};
@@ -2189,8 +2171,7 @@ static void carried_far_out(void)
         for (int i = 0; i < 2; i++)
             memcpy(c[i].velocity, V, sizeof V);
         memcpy(c[0].at, x, sizeof x);
-        spring_scene *s = ball_at(x, V, g, 0, 2);
-        set(s, c, k % 2 ? 2 : 1);
+        spring_scene *s = ball_on(c, k % 2 ? 2 : 1, x, V, down, 0);
         for (int step = 0; step < 300; step++) {
             double now[3], v[3];
             uint32_t touches;
@@ -2256,8 +2237,7 @@ static void damped_pair_leaves(void)
 {
     for (int k = 0; k < 100; k++) {
         const spring_collider c = random_ground();
-        const double x[3] = {0, k % 2 ? -random_log(1e-4, 0.1) : 0, 0}, none[3] = {0},
-                     before[3] = {1, random_log(0.01, 3), 0};
+        const double x[3] = {0, k % 2 ? -random_log(1e-4, 0.1) : 0, 0}, before[3] = {1, random_log(0.01, 3), 0};
         double v[3] = {before[0], before[1], before[2]}, impulse[3];
         step_of_pair(x, v, none, &c, random_log(0.5, 1000), impulse);
         CHECK_BELOW(distance(v, before), 64 * EPS, "its velocity");
@@ -2324,12 +2304,12 @@ static void distant_floor(void)
 static void folds(void)
 {
     for (int k = 0; k < 60; k++) {
-        const double angle = random_log(0.01, 1.2), r = 0.08, speed = random_uniform(0.5, 5), none[3] = {0};
+        const double angle = random_log(0.01, 1.2), r = 0.08, speed = random_uniform(0.5, 5);
         const double x[3] = {-0.3 * speed, r, 0}, v[3] = {speed, 0, 0}, dt = random_uniform(0.5, 1.5) / 480;
         faces fold = {2, {{0, 1, 0}, {-sin(angle), cos(angle), 0}}};
         const spring_collider c = {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .user = &fold, .thickness = 1};
         double now[3], u[3];
-        end_of(ball_at(x, v, none, r, 1), &c, 1, SPRING_LEAPFROG, dt, 480, now, u);
+        end_of(ball_on(&c, 1, x, v, none, r), SPRING_LEAPFROG, dt, 480, now, u);
         CHECK_CLOSE(hypot(u[0], u[1]), speed * cos(angle), 1e3 * EPS * speed, "v cos(angle)");
     }
 }
@@ -2449,7 +2429,7 @@ static void damped_bodies_fall(void)
 static void steps_and_calls(void)
 {
     for (int i = 0; i < 400; i++) {
-        double x[3], v[3], g[3] = {0, -gravity, 0};
+        double x[3], v[3];
         spring_collider c = {.shape = SPRING_CAPSULE, .radius = random_uniform(0.1, 0.4), .friction = i % 3 * 0.3};
         for (int a = 0; a < 3; a++) {
             c.at[a] = random_uniform(-0.3, 0.3);
@@ -2460,7 +2440,7 @@ static void steps_and_calls(void)
             x[a] = random_uniform(-0.3, 0.3) + (a == 1 ? 0.8 : 0);
             v[a] = random_uniform(-1, 1) - (a == 1 ? 2 : 0);
         }
-        spring_scene *s[2] = {particle_at(x, v, g, 1), particle_at(x, v, g, 1)};
+        spring_scene *s[2] = {particle_on(NULL, 1, x, v, down), particle_on(NULL, 1, x, v, down)};
 
         for (int k = 0; k < 2; k++) {
             set(s[k], &c, 1);
@@ -2476,7 +2456,7 @@ static void steps_and_calls(void)
 /* A particle that lands without restitution or friction on the end of a capsule that becomes shorter stays on it. */
 static void lands_on_an_end(void)
 {
-    const double x[3] = {0.603, 0.807, 0}, v[3] = {0.827, -1.248, 0}, g[3] = {0, -gravity, 0};
+    const double x[3] = {0.603, 0.807, 0}, v[3] = {0.827, -1.248, 0};
     const spring_collider c = {.shape = SPRING_CAPSULE,
                                .at = {0.166, -0.121, 0},
                                .to = {0.817, 0.302, 0},
@@ -2488,8 +2468,7 @@ static void lands_on_an_end(void)
         const int rate = 480 << 2 * k;
         int landings = 0;
         uint32_t touches = 0, before = 0;
-        spring_scene *s = particle_at(x, v, g, 1);
-        set(s, &c, 1);
+        spring_scene *s = particle_on(&c, 1, x, v, down);
         for (int i = 0; i < 2 * rate / 5; i++, before = touches) {
             run(s, SPRING_LEAPFROG, 1. / rate, 1);
             spring_scene_touching(s, &touches, 0, 1);
@@ -2507,8 +2486,8 @@ static void lands_on_an_end(void)
 /* A state does not have the functions of custom bodies: those of the scene stay, and must be in the same places. */
 static void saved_bodies(void)
 {
-    const double x[3] = {0.7, 1, -0.9}, none[3] = {0}, g[3] = {0, -gravity, 0};
-    spring_scene *s = particle_at(x, none, g, 2), *other = particle_at(none, none, none, 2);
+    const double x[3] = {0.7, 1, -0.9};
+    spring_scene *s = particle_on(NULL, 2, x, none, down), *other = particle_on(NULL, 2, none, none, none);
     spring_collider c[2] = {unit_box, {.shape = SPRING_CUSTOM, .gap = gaps_of_faces, .thickness = 0.1}};
     c[1].user = &valley, c[1].friction = 0.1;
     c[0].at[1] = -5;

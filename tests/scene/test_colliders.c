@@ -103,20 +103,20 @@ static double seen(view w, double value, int length, int time, int axis)
 
 static void change_collider(spring_collider *c, view w)
 {
-    enum { none = 3 };
-    c->radius = seen(w, c->radius, 1, 0, none);
+    enum { no_axis = 3 };
+    c->radius = seen(w, c->radius, 1, 0, no_axis);
     for (int a = 0; a < 3; a++) {
-        const int frame = c->shape == SPRING_BOX ? none : a; /* the axes of a box are mirrored as well */
+        const int frame = c->shape == SPRING_BOX ? no_axis : a; /* the axes of a box are mirrored as well */
         c->at[a] = seen(w, c->at[a], 1, 0, a);
         c->to[a] = seen(w, c->to[a], 1, 0, a);
-        c->half[a] = seen(w, c->half[a], 1, 0, none);
+        c->half[a] = seen(w, c->half[a], 1, 0, no_axis);
         c->velocity[a] = seen(w, c->velocity[a], 1, -1, a);
         c->velocity_to[a] = seen(w, c->velocity_to[a], 1, -1, a);
         c->surface[a] = seen(w, c->surface[a], 1, -1, frame);
         c->acceleration[a] = seen(w, c->acceleration[a], 1, -2, a);
         const int turns = w.mirrored < 0 || a == w.mirrored ? 1 : -1; /* axial vectors */
-        c->spin[a] = turns * seen(w, c->spin[a], 0, -1, none);
-        c->spin_acceleration[a] = turns * seen(w, c->spin_acceleration[a], 0, -2, none);
+        c->spin[a] = turns * seen(w, c->spin[a], 0, -1, no_axis);
+        c->spin_acceleration[a] = turns * seen(w, c->spin_acceleration[a], 0, -2, no_axis);
         for (int i = 0; i < 3; i++)
             c->axis[i][a] = seen(w, c->axis[i][a], 0, 0, a);
     }
@@ -642,7 +642,7 @@ static void pressed_by_damping(void)
     spring_collider c = ground;
     c.restitution = 0.9;
     double now[3], speed[3];
-    end_of(scene_of(&def), &c, 1, SPRING_LEAPFROG, 0.01, 1, now, speed);
+    end_of(scene_with(&def, &c), SPRING_LEAPFROG, 0.01, 1, now, speed);
     CHECK_CLOSE(now[1], 0, 10 * EPS, "stays on the floor");
     CHECK_BELOW(fabs(speed[1]), 10 * EPS, "at rest");
 }

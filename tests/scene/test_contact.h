@@ -10,6 +10,7 @@
 enum { in_double = sizeof(scalar) == sizeof(double) };
 
 static const double gravity = 9.81;
+static const double none[3] = {0}, down[3] = {0, -9.81, 0}; /* [m/s^2] no gravity, and gravity along y */
 
 static const spring_collider ground = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
 static const spring_collider unit_box = {
@@ -115,19 +116,20 @@ SPRING_INLINE spring_scene *scene_with(const spring_scene_def *def, const spring
     return s;
 }
 
-/* One free particle of 0.7 kg. */
-SPRING_INLINE spring_scene *ball_at(const double x[3], const double v[3], const double g[3], double radius,
-                                    uint32_t colliders)
+/* One free particle of 0.7 kg, with room for `count` colliders, which are set unless c is NULL. */
+SPRING_INLINE spring_scene *ball_on(const spring_collider *c, uint32_t count, const double x[3], const double v[3],
+                                    const double g[3], double radius)
 {
     spring_scene_def def = falling(1, x, v, 0.7);
-    def.colliders = colliders, def.particle_radius = (scalar)radius;
+    def.colliders = count, def.particle_radius = radius;
     memcpy(def.gravity, g, sizeof def.gravity);
-    return scene_of(&def);
+    return c != NULL ? scene_with(&def, c) : scene_of(&def);
 }
 
-SPRING_INLINE spring_scene *particle_at(const double x[3], const double v[3], const double g[3], uint32_t colliders)
+SPRING_INLINE spring_scene *particle_on(const spring_collider *c, uint32_t count, const double x[3], const double v[3],
+                                        const double g[3])
 {
-    return ball_at(x, v, g, 0, colliders);
+    return ball_on(c, count, x, v, g, 0);
 }
 
 /* The first particle. */
@@ -142,11 +144,9 @@ SPRING_INLINE void run(spring_scene *s, spring_method m, double dt, uint64_t n)
     CHECK(spring_scene_advance(s, m, dt, n) == SPRING_OK, "finite");
 }
 
-/* Sets colliders, takes n steps and frees the scene. */
-SPRING_INLINE void end_of(spring_scene *s, const spring_collider *c, uint32_t count, spring_method m, double dt,
-                          uint64_t n, double x[3], double v[3])
+/* Takes n steps and frees the scene. */
+SPRING_INLINE void end_of(spring_scene *s, spring_method m, double dt, uint64_t n, double x[3], double v[3])
 {
-    set(s, c, count);
     run(s, m, dt, n);
     get(s, x, v);
     free(s);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Contacts compared with exact solutions: bounces, friction, time of impact, order, wedges, energy. The rules of the
    functions are tested in tests/scene/test_colliders.c. */
+#include "contact/closed_forms.h"
 #include "test_contact.h"
 
 static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
@@ -58,7 +59,7 @@ static void step_once(spring_scene *s, spring_method method, double dt, double x
 
 static void run_to(const setting *w, spring_method method, double dt, double end, double x[3], double v[3])
 {
-    end_of(scene_for(w), w->collider, w->colliders, method, dt, (uint64_t)lround(end / dt), x, v);
+    end_of(scene_for(w), method, dt, (uint64_t)lround(end / dt), x, v);
 }
 
 /* Acceleration of a particle that slides on a unit sphere: gravity, the normal force N, and friction mu N. Returns N. */
@@ -126,18 +127,18 @@ static void bounce(void)
             w.collider[0].restitution = e;
             spring_scene *s = scene_for(&w);
             double x[3], v[3], ratio = 1;
-            bool down = true;
+            bool falls = true;
             int found = 0;
             for (int i = 0; i < 480 * 12; i++) {
                 step_once(s, SPRING_LEAPFROG, dt, x, v);
-                if (!down && v[1] <= 0 && found < 3) {
+                if (!falls && v[1] <= 0 && found < 3) {
                     ratio *= e * e;
                     const double height = x[1] + v[1] * v[1] / (2 * gravity);
                     CHECK_CLOSE(height / (drop * ratio), 1, in_double ? 3e-5 : 1e-3,
                                 "the time of impact is found, so the error is of second order");
                     found++;
                 }
-                down = v[1] <= 0;
+                falls = v[1] <= 0;
             }
             CHECK(found == 3, "three bounces");
             CHECK_BELOW(fabs(x[1]), in_double ? 1e-15 : 1e-6, "on the floor, to the rounding of a step there");
@@ -148,25 +149,9 @@ static void bounce(void)
 
 static double spring_on_plane_error(const setting *w, spring_method method, double dt)
 {
-    const double omega = 2 * PI, end = 1.5, e = w->collider[0].restitution;
-    double t = 0, y = 1, v = 0, got[3], speed[3];
-    for (;;) { /* between impacts y = -0.5 + A cos(omega t + phase) */
-        const double amplitude = hypot(y + 0.5, v / omega), phase = atan2(-v / omega, y + 0.5);
-        const double q = acos(0.5 / amplitude);
-        double until_impact = fmod(q - phase + 4 * PI, 2 * PI) / omega;
-        if (until_impact < 1e-12)
-            until_impact += 2 * (PI - q) / omega;
-        if (t + until_impact > end) {
-            y = -0.5 + amplitude * cos(omega * (end - t) + phase);
-            v = -amplitude * omega * sin(omega * (end - t) + phase);
-            break;
-        }
-        t += until_impact;
-        v = e * amplitude * omega * sin(q);
-        y = 0;
-    }
-    run_to(w, method, dt, end, got, speed);
-    return hypot(got[1] - y, (speed[1] - v) / omega);
+    double x[3], v[3];
+    run_to(w, method, dt, 1.5, x, v);
+    return distance_on_spring(2 * PI, w->collider[0].restitution, 1.5, x[1], v[1]);
 }
 
 /* A mass on a spring, whose rest position is inside the floor. */
@@ -190,22 +175,9 @@ static void spring_on_plane(void)
 
 static double oblique_error(const setting *w, spring_method method, double dt)
 {
-    const double e = w->collider[0].restitution, mu = w->collider[0].friction, end = 2;
-    double t = 0, x = 0, y = w->x[1], vx = w->v[0], vy = 0, got[3], v[3];
-    for (;;) {
-        const double flight = (vy + sqrt(vy * vy + 2 * gravity * y)) / gravity;
-        if (t + flight > end)
-            break;
-        t += flight;
-        x += vx * flight;
-        const double normal = gravity * flight - vy;
-        vy = e * normal;
-        y = 0;
-        vx = fmax(0, vx - mu * (1 + e) * normal);
-    }
-    const double rest = end - t;
-    run_to(w, method, dt, end, got, v);
-    return hypot(got[0] - x - vx * rest, got[1] - y - vy * rest + gravity * rest * rest / 2);
+    double x[3], v[3];
+    run_to(w, method, dt, 2, x, v);
+    return distance_of_bounces(w->v[0], w->collider[0].restitution, w->collider[0].friction, 2, x);
 }
 
 /* Each bounce takes mu (1 + e) of the normal speed from the tangential one. */
@@ -273,7 +245,8 @@ static void moving_wall(void)
             double x[3], v[3];
             set(s, NULL, 0);
             run(s, with_contacts[m], 0.01, 25);
-            end_of(s, w.collider, 1, with_contacts[m], 0.01, 10, x, v);
+            set(s, w.collider, 1);
+            end_of(s, with_contacts[m], 0.01, 10, x, v);
             const double hit = 0.1 / speed, after = 0.1 - hit;
             CHECK_CLOSE(v[0], (1 + e) * speed, 10 * EPS, "thrown ahead of it");
             CHECK_CLOSE(v[1], mu * (1 + e) * speed, 10 * EPS, "friction");
@@ -570,9 +543,8 @@ static void wedge_of_planes(void)
             const double r = random_uniform(0.02, 0.2), at = random_uniform(0.05, 0.95) * angle;
             const double direction = at + PI + random_uniform(-0.6, 0.6);
             const double x[3] = {r * cos(at), r * sin(at), 0};
-            const double v[3] = {speed * cos(direction), speed * sin(direction), 0}, none[3] = {0};
-            spring_scene *s = particle_at(x, v, none, 2);
-            set(s, c, 2);
+            const double v[3] = {speed * cos(direction), speed * sin(direction), 0};
+            spring_scene *s = particle_on(c, 2, x, v, none);
             for (int n = 0; n < 20; n++) {
                 run(s, SPRING_LEAPFROG, dt, 1);
                 deepest = fmax(deepest, -least_gap(s, c, 2, 0, 0));

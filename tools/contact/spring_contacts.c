@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "common/cli.h"
+#include "contact/closed_forms.h"
 #include "scenes/start.h"
 
 static const double pi = 3.14159265358979323846, g = 9.81; /* [m/s^2] */
@@ -262,25 +263,6 @@ static void state_after(contact_scheme scheme, const spring_scene_def *def, cons
 
 static const double omega = 2 * 3.14159265358979323846; /* [1/s] */
 
-/* y and v after 1.5 s of a spring with its rest position 0.5 m below a plane, from 1 m above it, with restitution 1. */
-static void spring_on_plane(double *y, double *v)
-{
-    const double below = 0.5, end = 1.5;
-    double t = 0;
-    *y = 1, *v = 0;
-    for (;;) {
-        const double amplitude = hypot(*y + below, *v / omega), phase = atan2(-*v / omega, *y + below);
-        const double hit = acos(below / amplitude), wait = (hit - phase) / omega;
-        if (t + wait > end) {
-            *y = amplitude * cos(omega * (end - t) + phase) - below;
-            *v = -amplitude * omega * sin(omega * (end - t) + phase);
-            return;
-        }
-        t += wait;
-        *y = 0, *v = amplitude * omega * sin(hit);
-    }
-}
-
 /* [m] distance from the exact position and velocity/omega. */
 static double spring_case(contact_scheme scheme, double dt, double restitution)
 {
@@ -291,10 +273,9 @@ static double spring_case(contact_scheme scheme, double dt, double restitution)
         .particles = 2, .links = 1, .position = x, .mass_all = mass, .pinned = pinned, .link = &link};
     spring_collider c = ground;
     c.restitution = restitution;
-    double y[3], v[3], exact_y, exact_v;
-    spring_on_plane(&exact_y, &exact_v);
+    double y[3], v[3];
     state_after(scheme, &def, &c, dt, 1.5, 1, y, v);
-    return hypot(y[1] - exact_y, (v[1] - exact_v) / omega);
+    return distance_on_spring(omega, restitution, 1.5, y[1], v[1]);
 }
 
 /* [m] distance from the exact position after 1.5 s of bounces at 3 m/s along the ground. */
@@ -304,18 +285,9 @@ static double oblique(contact_scheme scheme, double dt, double friction)
     const spring_scene_def def = one_particle(x, v, g);
     spring_collider c = ground;
     c.restitution = 0.8, c.friction = friction;
-    double at = 0, speed = v[0], impact = sqrt(2 * g), t = impact / g, y[3], u[3];
-    at = speed * t;
-    for (;;) {
-        speed -= fmin(speed, c.friction * (1 + c.restitution) * impact);
-        impact *= c.restitution;
-        const double flight = 2 * impact / g;
-        if (t + flight > end)
-            break;
-        t += flight, at += speed * flight;
-    }
+    double y[3], u[3];
     state_after(scheme, &def, &c, dt, end, 0, y, u);
-    return hypot(y[0] - at - speed * (end - t), y[1] - (impact * (end - t) - g / 2 * (end - t) * (end - t)));
+    return distance_of_bounces(v[0], c.restitution, c.friction, end, y);
 }
 
 /* A particle slides down a sphere of 1 m: d/dt of its angle from the top and of the angular rate. */
@@ -478,15 +450,13 @@ static double bat(contact_scheme scheme, double dt, double rate)
 /* [m] distance from the exact position of a bead on a plane that turns under it, rho'' = rate^2 rho - g sin(rate t). */
 static double turning_plane(contact_scheme scheme, double dt, double rate)
 {
-    const double rho = 0.3, speed = 2.5, end = 0.7, turned = rate * end;
+    const double rho = 0.3, speed = 2.5, end = 0.7;
     const double x[3] = {rho, 0, 0}, v[3] = {speed, rate * rho, 0};
     const spring_scene_def def = one_particle(x, v, g);
     const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .spin = {0, 0, rate}};
-    const double exact =
-        rho * cosh(turned) + (speed - g / (2 * rate)) / rate * sinh(turned) + g / (2 * rate * rate) * sin(turned);
     double y[3], u[3];
     state_after(scheme, &def, &c, dt, end, 0, y, u);
-    return hypot(y[0] - exact * cos(turned), y[1] - exact * sin(turned));
+    return distance_on_turning_plane(rate, rho, speed, end, y);
 }
 
 /* [m] change of the radius of a particle that friction holds on a turntable for 100 s. */
