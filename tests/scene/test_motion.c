@@ -147,26 +147,6 @@ static void build_free(model *m, unsigned features)
     build(m, (uint32_t[]){5, 4, 2}, 3, OWN | STRAY | MASSES | features);
 }
 
-typedef struct momenta {
-    double linear[3], angular[3];
-} momenta;
-
-static momenta momenta_of(const model *m, const spring_scene *s)
-{
-    static state y;
-    momenta p = {{0}, {0}};
-    get_state(s, m->def.particles, &y);
-    for (size_t i = 0; i < m->def.particles; i++)
-        for (int a = 0; a < 3; a++) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            const double *x = &y.x[3 * i], *v = &y.v[3 * i];
-            const double kg = 1 / (double)(scalar)(1 / m->mass[i]); /* as it acts */
-            p.linear[a] += kg * v[a];
-            p.angular[a] += kg * (x[b] * v[c] - x[c] * v[b]);
-        }
-    return p;
-}
-
 static void check_momentum(const model *m, spring_method method)
 {
     const int n = 1000;

@@ -337,6 +337,32 @@ SPRING_INLINE double total_energy(const spring_scene *s)
     return e.kinetic + e.elastic + e.gravity;
 }
 
+typedef struct momenta {
+    double linear[3], angular[3], place[3]; /* place: mass times position */
+    double mass, size; /* size: the sum of m |v| (1 + |x|), of which rounding errors are fractions */
+} momenta;
+
+/* Of all particles, with the masses with which they act. */
+SPRING_INLINE momenta momenta_of(const model *m, const spring_scene *s)
+{
+    static state y;
+    momenta p = {{0}, {0}, {0}, 0, 0};
+    get_state(s, m->def.particles, &y);
+    for (size_t i = 0; i < m->def.particles; i++) {
+        const double kg = 1 / (double)(scalar)(1 / mass_in(&m->def, i));
+        double x[3] = {0}, v[3] = {0};
+        memcpy(x, &y.x[m->def.axes * i], m->def.axes * sizeof *x);
+        memcpy(v, &y.v[m->def.axes * i], m->def.axes * sizeof *v);
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            p.linear[a] += kg * v[a], p.angular[a] += kg * (x[b] * v[c] - x[c] * v[b]), p.place[a] += kg * x[a];
+        }
+        p.mass += kg;
+        p.size += kg * hypot(hypot(v[0], v[1]), v[2]) * (1 + hypot(hypot(x[0], x[1]), x[2]));
+    }
+    return p;
+}
+
 /* ---------------------------------------------------------------------------------------------------- a plain loop */
 
 /* The parameters of a link are those that the scene stores: rounded to float in single precision. */
