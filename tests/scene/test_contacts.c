@@ -354,65 +354,6 @@ static void conveyor(void)
 
 /* ------------------------------------------------------------------------------------------------------ many particles */
 
-/* A rope over a cylinder, drawn slowly at one end and loaded at the other: the tensions have the ratio e^(mu angle). */
-static double capstan(int steps_per_frame)
-{
-    enum { count = 64 };
-    const double radius = 0.5, thick = 0.01, around = radius + thick, angle = PI, tail = 0.6, mu = 0.3, load = 5;
-    const double length = angle * around + 2 * tail, spacing = length / (count - 1), stiffness = 500 / spacing;
-    const double mass = 16 * stiffness / (480.0 * 480), damping = 0.3 * sqrt(stiffness * mass),
-                 dt = 1.0 / 60 / steps_per_frame;
-    static double x[3 * count], force[3 * count];
-    static spring_link link[count - 1];
-    uint8_t pinned[count] = {0};
-    memset(force, 0, sizeof force);
-    for (int i = 0; i < count; i++) {
-        const double along = i * spacing, phi = fmin(fmax(along - tail, 0), angle * around) / around;
-        const double beyond = along < tail ? tail - along : fmax(along - length + tail, 0);
-        x[3 * i] = -around * cos(phi);
-        x[3 * i + 1] = around * sin(phi) - beyond;
-        x[3 * i + 2] = 0;
-        if (i + 1 < count)
-            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping, 0};
-    }
-    pinned[count - 1] = 1;
-    spring_scene_def def = falling(count, x, NULL, mass);
-    def.flags = SPRING_SCENE_FORCES | SPRING_SCENE_FORCE_IGNORES_VELOCITY, def.gravity[1] = 0;
-    def.pinned = pinned, def.links = count - 1, def.link = link, def.particle_radius = (scalar)thick;
-    const spring_collider cylinder = {
-        .shape = SPRING_CAPSULE, .at = {0, 0, -1}, .to = {0, 0, 1}, .radius = radius, .friction = mu};
-    spring_scene *s = scene_with(&def, &cylinder);
-    const double speed = 0.01, end = 16, velocity[3] = {0, -speed, 0};
-    spring_scene_set(s, SPRING_VELOCITY, velocity, 0, count - 1, 1);
-    double pulled = 0, loaded = 0;
-    const int frames = (int)(end * 60);
-    int used = 0;
-    for (int frame = 0; frame < frames; frame++) {
-        double v[3];
-        spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
-        force[1] = -load - 20 * mass * v[1];
-        spring_scene_set(s, SPRING_FORCE, force, 0, 0, 1);
-        run(s, SPRING_LEAPFROG, dt, (uint64_t)steps_per_frame);
-        if (frame > frames / 2) {
-            const double moving = mass / spacing * speed * speed; /* momentum that the rope carries along */
-            pulled += spring_scene_tension(s, count - 3) - moving;
-            loaded += spring_scene_tension(s, 1) - moving;
-            used++;
-        }
-    }
-    CHECK(used > 0, "frames");
-    free(s);
-    return pulled / loaded;
-}
-
-static void capstan_equation(void)
-{
-    const double ratio = capstan(8);
-    CHECK_CLOSE(ratio / exp(0.3 * PI), 1, 5e-3, "the rope is a polygon: 0.2 % at 64 particles");
-    for (int steps = 16; steps <= 32 && in_double; steps *= 2)
-        CHECK_CLOSE(capstan(steps) / ratio, 1, 1e-3, "friction does not depend on the step");
-}
-
 /* The least gap of a free particle, with the poses `since` after they were set. */
 static double least_gap(const spring_scene *s, const spring_collider *c, uint32_t colliders, double radius,
                         double since)
@@ -605,7 +546,6 @@ static const test tests[] = {
     {"moving wall", moving_wall},
     {"stopping distance", stopping_distance},
     {"conveyor belt", conveyor},
-    {"capstan", capstan_equation},
     {"never inside one collider", never_inside},
     {"hits and misses", hits_and_misses},
     {"wedges", wedges},

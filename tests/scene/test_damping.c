@@ -398,35 +398,6 @@ static void speed_at_the_ends_of_steps(void)
 
 /* --------------------------------------------------------------------------------------------------- softened links */
 
-static void soften(void)
-{
-    static model m, before;
-    for (unsigned number = 0; number < 300; number++) {
-        build_wild(&m, number);
-        for (size_t i = 0; i < m.def.particles && (m.def.flags & SPRING_SCENE_EDITABLE) == 0; i++)
-            m.mass[i] = pinned_in(&m.def, i) ? -1 : m.mass[i]; /* which is not used */
-        before = m;
-        const double stable = stable_step_of(&m.def, SPRING_LEAPFROG);
-        if (!(stable < INFINITY))
-            continue;
-        const double fraction = random_uniform(0.1, 1), dt = random_log(0.1, 30) * stable;
-        CHECK(spring_links_soften(&m.def, dt, fraction, m.link) == SPRING_OK, "a valid definition");
-        bool lowered = false;
-        for (size_t i = 0; i < m.def.links; i++) {
-            const spring_link *now = &m.link[i], *was = &before.link[i];
-            CHECK(now->stiffness <= was->stiffness && now->stiffness > 0 && now->damping == was->damping &&
-                      now->rest == was->rest && now->a == was->a && now->b == was->b,
-                  "lower stiffness, and nothing else");
-            lowered = lowered || now->stiffness < was->stiffness;
-        }
-        const double now = stable_step_of(&m.def, SPRING_LEAPFROG);
-        CHECK(dt <= fraction * now, "stable");
-        CHECK(!lowered || now <= 1.4 * dt / fraction, "and no softer than needed");
-        CHECK(lowered || now == stable, "nothing to do");
-        CHECK(lowered == (dt > fraction * stable) || fabs(dt / (fraction * stable) - 1) < 1e-3, "only where needed");
-    }
-}
-
 /* Bad input: nothing is written. */
 static void soften_bad_input(void)
 {
@@ -498,7 +469,6 @@ int main(void)
         {"more damping than terms", beyond_the_largest_number_of_terms},
         {"max_speed", too_fast},
         {"max_speed at the ends of steps", speed_at_the_ends_of_steps},
-        {"soften", soften},
         {"soften: bad input", soften_bad_input},
         {"softened scenes", softened_scenes_stay},
         {"energy falls", energy_falls},

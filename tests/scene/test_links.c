@@ -81,8 +81,8 @@ static void definitions(void)
 
 enum { few = 5, most_rows = 3 * few };
 
-/* Few particles with links of all kinds, stretched up to three times or compressed to 0.3. */
-static void build_few(uint32_t axes, bool damped)
+/* Few particles with links of all kinds, stretched or compressed by up to this factor. */
+static void build_few(uint32_t axes, double factor, bool damped)
 {
     const size_t particles = 2 + below(few - 1);
     m.def = (spring_scene_def){.axes = axes, .particles = particles, .position = m.position, .velocity = m.velocity};
@@ -106,7 +106,7 @@ static void build_few(uint32_t axes, bool damped)
         double square = 0;
         for (uint32_t d = 0; d < axes; d++)
             square += pow(m.position[m.link[i].a * axes + d] - m.position[m.link[i].b * axes + d], 2);
-        m.link[i].rest = below(5) == 0 ? 0 : sqrt(square) / random_log(0.3, 3);
+        m.link[i].rest = below(5) == 0 ? 0 : sqrt(square) / random_log(1 / factor, factor);
         m.link[i].flags = axes == 1 ? 0 : (uint32_t)below(4);
     }
     m.def.weighted_links = particles < 4 ? 0 : below(2 * few);
@@ -117,7 +117,7 @@ static void build_few(uint32_t axes, bool damped)
         weighted_vector(&m.weighted[i], axes, m.position, d, &size);
         for (uint32_t a = 0; a < axes; a++)
             square += d[a] * d[a];
-        m.weighted[i].rest = below(3) == 0 ? 0 : sqrt(square) / random_log(0.3, 3);
+        m.weighted[i].rest = below(3) == 0 ? 0 : sqrt(square) / random_log(1 / factor, factor);
     }
     m.def.methods = 1u << SPRING_LEAPFROG;
 }
@@ -138,7 +138,7 @@ static void energy(void)
     for (int number = 0; number < 1000; number++) {
         const uint32_t axes = 1 + (uint32_t)below(3);
         double force[3 * few] = {0}, stiffest = 1, x[3 * few];
-        build_few(axes, false);
+        build_few(axes, 3, false);
         plain_forces(&m.def, axes, m.position, m.velocity, force, NULL);
         for (size_t i = 0; i < m.def.links; i++)
             stiffest += m.link[i].stiffness;
@@ -230,7 +230,7 @@ static void stable_step(void)
     for (int number = 0; number < 10000; number++) {
         const uint32_t axes = 1 + (uint32_t)below(3);
         double matrix[most_rows][most_rows] = {{0}};
-        build_few(axes, false);
+        build_few(axes, 20, false);
         for (size_t i = 0; i < m.def.links; i++) {
             const spring_link *l = &m.link[i];
             const link_force f = evaluate_link(l, axes, m.position, m.velocity);
