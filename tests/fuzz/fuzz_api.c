@@ -30,14 +30,6 @@ typedef struct input {
     double more[8];
 } input;
 
-static void must(bool holds, const char *what)
-{
-    if (holds)
-        return;
-    fprintf(stderr, "fuzz_api: %s\n", what);
-    abort();
-}
-
 static bool same(spring_state a, spring_state b)
 {
     return memcmp(&a, &b, sizeof a) == 0;

@@ -31,7 +31,7 @@ static const cli_option options[] = {
 };
 static const cli_program fuzzed = {.name = "fuzz_cli", .options = options};
 
-static void must(bool holds, const char *what, const char *word)
+static void must_read(bool holds, const char *what, const char *word)
 {
     if (holds)
         return;
@@ -57,11 +57,11 @@ static void check_count(const char *word)
     const bool accepted = parse_count(word, &value);
     const double other = strtod(word, NULL);
     if (accepted) {
-        must(strspn(word, "0123456789e") == strlen(word), "digits, and e for the power of ten", word);
-        must(fabs((double)value - other) <= DBL_EPSILON * other, "the value is another one", word);
+        must_read(strspn(word, "0123456789e") == strlen(word), "digits, and e for the power of ten", word);
+        must_read(fabs((double)value - other) <= DBL_EPSILON * other, "the value is another one", word);
     } else {
-        must(value == untouched, "a count that is refused changes nothing", word);
-        must(!looks_whole(word) || other > 0x1p64 * (1 - DBL_EPSILON), "a whole number is refused", word);
+        must_read(value == untouched, "a count that is refused changes nothing", word);
+        must_read(!looks_whole(word) || other > 0x1p64 * (1 - DBL_EPSILON), "a whole number is refused", word);
     }
 }
 
@@ -72,10 +72,10 @@ static void check_real(const char *word)
     const double other = strtod(word, &end);
     const bool finite = end != word && *end == '\0' && isfinite(other) && strchr(" \t\n\v\f\r", word[0]) == NULL;
     if (parse_real(word, &value)) {
-        must(finite, "more than a number", word);
-        must(value == other, "the value is another one", word);
+        must_read(finite, "more than a number", word);
+        must_read(value == other, "the value is another one", word);
     } else {
-        must(!finite || other == 0, "a number is refused; only 0 may stand for one that vanished", word);
+        must_read(!finite || other == 0, "a number is refused; only 0 may stand for one that vanished", word);
     }
 }
 
@@ -84,12 +84,12 @@ static void check_values(const char *word)
     for (const cli_option *o = options; o->name != NULL; o++) {
         if (o->kind == CLI_FLAG || !store(o, word))
             continue;
-        must(o->kind != CLI_COUNT || (whole >= o->least && whole <= o->most), "a count beyond its limits", word);
-        must(o->kind != CLI_NOT_NEGATIVE || number >= 0, "a negative number", word);
-        must(o->kind != CLI_POSITIVE || number > 0, "not a positive number", word);
-        must(o->kind != CLI_METHOD || strcmp(word, spring_method_name((spring_method)choice)) == 0, "another method",
-             word);
-        must((o->kind != CLI_FILE && o->kind != CLI_FOLDER) || *word != '\0', "no name", word);
+        must_read(o->kind != CLI_COUNT || (whole >= o->least && whole <= o->most), "a count beyond its limits", word);
+        must_read(o->kind != CLI_NOT_NEGATIVE || number >= 0, "a negative number", word);
+        must_read(o->kind != CLI_POSITIVE || number > 0, "not a positive number", word);
+        must_read(o->kind != CLI_METHOD || strcmp(word, spring_method_name((spring_method)choice)) == 0,
+                  "another method", word);
+        must_read((o->kind != CLI_FILE && o->kind != CLI_FOLDER) || *word != '\0', "no name", word);
     }
     const char *value;
     if (option_count == 0) {
@@ -98,10 +98,10 @@ static void check_values(const char *word)
     }
     const size_t which = option_of(word, &value);
     const cli_option *o = which < option_count ? option_table[which].option : NULL;
-    must(o != NULL || word[0] != '-' || word[1] != 'o', "-o is always an option", word);
-    must(value == NULL || (value > word && value <= word + strlen(word)), "the value is part of the word", word);
+    must_read(o != NULL || word[0] != '-' || word[1] != 'o', "-o is always an option", word);
+    must_read(value == NULL || (value > word && value <= word + strlen(word)), "the value is part of the word", word);
     if (o != NULL && word[1] == '-')
-        must(strncmp(word + 2, o->name, strlen(o->name)) == 0, "names are not abbreviated", word);
+        must_read(strncmp(word + 2, o->name, strlen(o->name)) == 0, "names are not abbreviated", word);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -30,14 +30,6 @@ typedef spring_scene scene;
 
 enum { most_particles = 80, most_links = 1000, most_weighted = 40, most_calls = 40, guard = 2 * SPRING_SCENE_ALIGN };
 
-static void must(bool holds, const char *what)
-{
-    if (holds)
-        return;
-    fprintf(stderr, "fuzz_scene: %s\n", what);
-    abort();
-}
-
 /* ---------------------------------------------------------------------------------------------- bytes as choices */
 
 static const uint8_t *next, *end;

@@ -28,14 +28,6 @@ enum { kinds = 64 };
 
 static size_t block; /* [bytes] of the scene */
 
-static void must(bool holds, const char *what)
-{
-    if (holds)
-        return;
-    fprintf(stderr, "fuzz_state: %s\n", what);
-    abort();
-}
-
 enum { most_particles = 48, most_links = 300 };
 
 /* The arrays of a definition. */
