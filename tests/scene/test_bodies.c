@@ -2401,34 +2401,6 @@ static void damped_bodies_fall(void)
     CHECK_BELOW(mean[1], 0.03, "with restitution");
 }
 
-/* n steps in one call are n calls, to the bit, with capsules that move, turn and change their length. */
-static void steps_and_calls(void)
-{
-    for (int i = 0; i < 400; i++) {
-        double x[3], v[3];
-        spring_collider c = {.shape = SPRING_CAPSULE, .radius = random_uniform(0.1, 0.4), .friction = i % 3 * 0.3};
-        for (int a = 0; a < 3; a++) {
-            c.at[a] = random_uniform(-0.3, 0.3);
-            c.to[a] = random_uniform(-0.3, 0.3);
-            c.velocity[a] = c.velocity_to[a] = random_uniform(-1, 1);
-            c.velocity_to[a] += i % 2 ? random_uniform(-1, 1) : 0;
-            c.acceleration[a] = i % 4 > 1 ? random_uniform(-3, 3) : 0;
-            x[a] = random_uniform(-0.3, 0.3) + (a == 1 ? 0.8 : 0);
-            v[a] = random_uniform(-1, 1) - (a == 1 ? 2 : 0);
-        }
-        spring_scene *s[2] = {particle_on(NULL, 1, x, v, down), particle_on(NULL, 1, x, v, down)};
-
-        for (int k = 0; k < 2; k++) {
-            set(s[k], &c, 1);
-            for (int call = 0; call < (k == 0 ? 1 : 40); call++)
-                run(s[k], SPRING_LEAPFROG, 0.01, k == 0 ? 40 : 1);
-        }
-        CHECK(same_bits(s[0], s[1], 1, 3), "n steps are n calls");
-        free(s[0]);
-        free(s[1]);
-    }
-}
-
 /* A particle that lands without restitution or friction on the end of a capsule that becomes shorter stays on it. */
 static void lands_on_an_end(void)
 {
@@ -2517,7 +2489,6 @@ static const test tests[] = {
     {"the fastest bounce", fastest_bounce},
     {"a damped pair leaves", damped_pair_leaves},
     {"a distant floor", distant_floor},
-    {"steps and calls", steps_and_calls},
     {"lands on an end", lands_on_an_end},
     {"saved bodies", saved_bodies},
     {"a hit from rest", hit_from_rest},

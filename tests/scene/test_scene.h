@@ -579,7 +579,7 @@ SPRING_INLINE spring_collider random_collider(uint32_t axes)
         c.to[a] = random_uniform(-0.5, 0.5);
         c.half[a] = random_uniform(0.2, 0.6);
         c.velocity[a] = random_uniform(-1, 1);
-        c.velocity_to[a] = c.velocity[a] + random_uniform(-0.5, 0.5);
+        c.velocity_to[a] = c.velocity[a] + (c.radius > 0.3 ? 1 : 0) * random_uniform(-0.5, 0.5); /* or rigid */
         c.spin[a] = random_uniform(-3, 3);
         c.acceleration[a] = c.radius > 0.4 ? 8 * c.at[a] : 0;
         c.spin_acceleration[a] = c.radius < 0.3 ? 8 * c.at[a] : 0;
