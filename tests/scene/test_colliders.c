@@ -606,32 +606,6 @@ static void inside_at_first(void)
         }
 }
 
-/* A heavily damped cloth on a floor: its velocities after damping do not enter it. */
-static void heavy_damping(void)
-{
-    static model m;
-    build(&m, (uint32_t[]){8, 8, 1}, 3, DAMPED);
-    for (size_t i = 0; i < m.def.links; i++)
-        m.link[i].damping = 500;
-    m.def.gravity[1] = -gravity;
-    m.def.colliders = 1;
-    spring_collider c = ground;
-    c.at[1] = -0.5, c.friction = 0.5;
-    spring_scene *s = scene_with(&m.def, &c);
-    run(s, SPRING_LEAPFROG, 0.01, 300);
-    uint32_t mask[most];
-    CHECK(count_touching(s, m.def.particles) >= 3, "stands on the floor; it is nearly rigid");
-    spring_scene_touching(s, mask, 0, m.def.particles);
-    for (size_t i = 0; i < m.def.particles; i++) {
-        double x[3], v[3];
-        spring_scene_get(s, SPRING_POSITION, x, 0, i, 1);
-        spring_scene_get(s, SPRING_VELOCITY, v, 0, i, 1);
-        CHECK_BELOW(fmax(0, -0.5 - x[1]), 100 * EPS, "above the floor");
-        CHECK(mask[i] == 0 || v[1] >= 0, "and not moving into it");
-    }
-    free(s);
-}
-
 /* A heavy damper presses a particle into the floor. Restitution does not throw it back: it is no impact. */
 static void pressed_by_damping(void)
 {
@@ -660,7 +634,6 @@ static const test tests[] = {
     {"rests in a groove", rests_in_a_groove},
     {"time of a wall", time_of_a_wall},
     {"inside at first", inside_at_first},
-    {"heavy damping", heavy_damping},
     {"pressed by damping", pressed_by_damping},
 };
 

@@ -7,11 +7,6 @@
 
 static model m;
 
-static size_t below(size_t count)
-{
-    return (size_t)(random_bits() % count);
-}
-
 /* --------------------------------------------------------------------------------------------------- definitions */
 
 static void check_refused(spring_weighted_link w, spring_status status, const char *field)
@@ -100,7 +95,7 @@ static void build_few(uint32_t axes, double factor, bool damped)
     m.def.weighted_link = m.weighted;
     m.def.links = below(2 * few);
     for (size_t i = 0; i < m.def.links; i++) {
-        const uint32_t a = (uint32_t)below(particles), b = (uint32_t)below(particles - 1);
+        const uint32_t a = below(particles), b = (uint32_t)below(particles - 1);
         m.link[i] = (spring_link){.a = a, .b = b < a ? b : b + 1, .stiffness = random_log(1, 1e3)};
         m.link[i].damping = damped ? random_log(0.01, 1) : 0;
         double square = 0;

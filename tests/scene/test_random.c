@@ -15,11 +15,6 @@ enum { rounds = 6, most_moves = 4, line = SPRING_SCENE_ALIGN, alignment = 8 };
 static const scene_kernels *given; /* NULL: any that this processor has */
 static size_t scenes = 2000;
 
-static size_t below(size_t count)
-{
-    return (size_t)(random_bits() % count);
-}
-
 static bool one_in(size_t count)
 {
     return below(count) == 0;
@@ -377,7 +372,7 @@ static void query(spring_scene *s, const model *m)
         spring_scene_touching(s, touching, 0, m->def.particles);
         break;
     default:
-        spring_scene_find_link(s, (uint32_t)below(m->def.particles), (uint32_t)below(m->def.particles));
+        spring_scene_find_link(s, below(m->def.particles), below(m->def.particles));
         spring_scene_get_link(s, below(m->def.links + 1), &link);
         spring_scene_get_weighted_link(s, below(m->def.weighted_links + 1), &weighted);
     }

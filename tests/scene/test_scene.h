@@ -68,6 +68,11 @@ SPRING_INLINE method_list use_all_methods(spring_scene_def *def)
     return list;
 }
 
+SPRING_INLINE uint32_t below(size_t count)
+{
+    return (uint32_t)(random_bits() % count);
+}
+
 /* A scene in memory of its own, to be given to free(). */
 SPRING_INLINE spring_scene *scene_of(const spring_scene_def *def)
 {

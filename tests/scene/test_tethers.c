@@ -15,11 +15,6 @@ typedef struct weighted_model {
 
 static weighted_model w;
 
-static uint32_t below(size_t n)
-{
-    return (uint32_t)(random_bits() % n);
-}
-
 /* Particles and links in no order; lengths are multiples of 1/8, so that sums are exact and ties happen. */
 static void build_random(size_t particles, bool own_tethers)
 {
