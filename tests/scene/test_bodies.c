@@ -926,19 +926,11 @@ static void coupled_momenta(void)
                            .stiffness = 100,
                            .damping = 0.14,
                            .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND};
-    const double none[3] = {0};
     static model m;
-    size_t particles, links;
-    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && links <= most_links, "room for the links");
-    spring_grid_fill(&g, m.position, NULL, m.link);
-    m.def = (spring_scene_def){.particles = particles,
-                               .links = links,
-                               .axes = 3,
-                               .position = m.position,
-                               .link = m.link,
-                               .mass_all = 0.02,
-                               .particle_radius = 0.05,
-                               .colliders = 1};
+    build_grid(&m, &g, 0.02);
+    m.def.axes = 3;
+    m.def.particle_radius = 0.05;
+    m.def.colliders = 1;
     for (int i = 0; i < 2; i++) {
         const double T = i == 0 ? 1. / 60 : 1. / 240;
         spring_scene *s = scene_of(&m.def);
@@ -963,7 +955,7 @@ static void coupled_momenta(void)
 static void coupled_rolling(void)
 {
     enum { side = 15 };
-    const double spacing = 0.14, k = 2000, mass = 0.02, down[3] = {0, -gravity, 0};
+    const double spacing = 0.14, k = 2000, mass = 0.02;
     const spring_grid g = {.count = {side, side},
                            .spacing = spacing,
                            .stiffness = k,
@@ -971,28 +963,19 @@ static void coupled_rolling(void)
                            .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
                            .pinned =
                                SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
-    double x[3 * side * side];
-    uint8_t pinned[side * side];
-    spring_link link[4 * side * side];
-    size_t particles, links;
-    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && links <= 4 * side * side, "room for the links");
-    spring_grid_fill(&g, x, pinned, link);
-    for (size_t i = 0; i < particles; i++) {
-        x[3 * i] -= spacing * (side - 1) / 2;
-        x[3 * i + 2] = x[3 * i + 1] - spacing * (side - 1) / 2;
-        x[3 * i + 1] = 0;
+    static model m;
+    build_grid(&m, &g, mass);
+    for (size_t i = 0; i < m.def.particles; i++) {
+        double *const x = &m.position[3 * i];
+        x[0] -= spacing * (side - 1) / 2;
+        x[2] = x[1] - spacing * (side - 1) / 2;
+        x[1] = 0;
     }
-    const spring_scene_def def = {.particles = particles,
-                                  .links = links,
-                                  .position = x,
-                                  .pinned = pinned,
-                                  .link = link,
-                                  .mass_all = mass,
-                                  .gravity = {0, -gravity, 0},
-                                  .drag = mass,
-                                  .particle_radius = 0.05,
-                                  .colliders = 1};
-    spring_scene *s = scene_of(&def);
+    m.def.gravity[1] = -gravity;
+    m.def.drag = mass;
+    m.def.particle_radius = 0.05;
+    m.def.colliders = 1;
+    spring_scene *s = scene_of(&m.def);
     turning_ball b = {
         .mass = 5, .inertia = 0.045, .radius = 0.15, .friction = 0.5, .at = {0, 0.3, 0}, .v = {0.5, 0, 0.2}};
     const double T = 0.02 * sqrt(0.13); /* it sinks by 0.13 m */
