@@ -321,14 +321,16 @@ static inline void record_change(const scene_step *s, size_t i, unsigned k, cons
     if (!t->records)
         return;
     const size_t stride = s->particles.stride;
-    const double mass = 1 / inverse_mass_at(s->scene, i), *const origin = t->origin[k];
-    double arm[3] = {0}, change[3] = {mass * removed.x, mass * removed.y, mass * removed.z};
+    contact_particle particle;
+    scene_contact_particle(s->scene, i, &particle);
+    const double *const origin = t->origin[k], change[3] = {removed.x, removed.y, removed.z};
+    double arm[3] = {0};
     for (uint32_t a = 0; a < s->particles.axes; a++)
         arm[a] = (double)x[a * stride + i] - origin[a];
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
-        t->impulse[k].linear[a] += change[a];
-        t->impulse[k].angular[a] += arm[b] * change[c] - arm[c] * change[b];
+        t->impulse[k].linear[a] += particle.mass * change[a];
+        t->impulse[k].angular[a] += particle.mass * (arm[b] * change[c] - arm[c] * change[b]);
     }
 }
 
