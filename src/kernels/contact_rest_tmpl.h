@@ -739,7 +739,7 @@ SPRING_NOINLINE void velocity_changes(const contact_body *b, scalar h, const rea
     const real3 middle = plus_scaled3(*x, splat(h / 2), *v);
     const real3 carried =
         plus3(splat_vector(b->end.at), direction_out_lanes(b, &b->end, place_in_lanes(b, &b->start, *x)));
-    const real3 place[] = {*x, middle, middle, carried};
+    const real3 place[4] = {*x, middle, middle, carried};
     real3 at[4];
     SPRING_ROLLED
     for (int i = 0; i < 4; i++)
@@ -776,13 +776,13 @@ static lane_bits pressing_on_collider(candidate_chunk *r, const picked_particles
     const real change = dot3(wanted, normal);
     const real3 slip = minus3(u, until_middle);
     /* as in pressed_value */
-    const real3 value[] = {{splat((scalar)FREE_IN_PLANE), splat((scalar)c), (scalar)b->friction * friction},
-                           normal,
-                           normal,
-                           times3(change / h, normal),
-                           plus_scaled3(wanted, -change, normal),
-                           plus_scaled3(slip, -dot3(slip, normal), normal)};
-    for (size_t i = 0; i < sizeof value / sizeof value[0]; i++)
+    const real3 value[6] = {{splat((scalar)FREE_IN_PLANE), splat((scalar)c), (scalar)b->friction * friction},
+                            normal,
+                            normal,
+                            times3(change / h, normal),
+                            plus_scaled3(wanted, -change, normal),
+                            plus_scaled3(slip, -dot3(slip, normal), normal)};
+    for (size_t i = 0; i < 6; i++)
         put3(l, &presses, &value[i], r->pressed + 3 * i * stride + first, stride, 3);
     return bits_where(l->where, RESTS_DONE) | bits_where(presses, RESTS_PRESSED);
 }
