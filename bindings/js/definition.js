@@ -455,5 +455,8 @@ export function define(take, definition) {
         component,
         count,
         base: optional(base, "float32", 4),
+        heldForces: (set & flags.heldForces) > 0,
+        tensionOnly: (set & flags.tensionOnly) > 0,
+        noUndo: (set & flags.noUndo) > 0,
     };
 }

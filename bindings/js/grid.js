@@ -107,7 +107,8 @@ export function soften(definition, dt, fraction = 0.5) {
     check(isNumber(fraction) && fraction > 0 && fraction <= 1, "fraction", "a number > 0 and <= 1", fraction);
     return borrowed((take) => {
         const { linkPointer, links } = define(take, definition);
-        library().def_soften(dt, fraction, linkPointer);
+        const status = library().def_soften(dt, fraction, linkPointer);
+        check(status === 0, "dt", "short enough for weightedLinks, which keep their stiffness", dt);
         return linksAt(linkPointer, links);
     });
 }

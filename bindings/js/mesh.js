@@ -125,7 +125,9 @@ export function tethers(definition, fraction = 0.05, slack = 0) {
         memory.uint8(all, linkBytes * links).set(memory.uint8(linkPointer, linkBytes * links));
         const [count, work, distance] = [take(4), take(8 * particles), take(16 * particles)];
         memory.uint32(count, 1)[0] = particles;
-        library().def_tethers(fraction, slack, all + linkBytes * links, count, work, distance);
+        const status = library().def_tethers(fraction, slack, all + linkBytes * links, count, work, distance);
+        const what = "small enough for links with finite values";
+        check(status === 0, "fraction and slack", what, [fraction, slack], RangeError);
         return linksAt(all, links + memory.uint32(count, 1)[0]);
     });
 }

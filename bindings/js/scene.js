@@ -44,7 +44,7 @@ const stepFailures = {
 };
 
 const lost = new FinalizationRegistry((pointer) => library().scene_free(pointer));
-const snapshots = new WeakMap(); // of a snapshot: { scene, bytes, force }
+const snapshots = new WeakMap(); // of a snapshot: { scene, bytes, force, frames, before, positions }
 
 export class Scene {
     #pointer = 0; // of what wasm/scenes.c calls shown
@@ -57,6 +57,7 @@ export class Scene {
     #views = { buffer: null }; // for the callback, by pointer
     #heldForces;
     #tensionOnly;
+    #noUndo;
     #count; // of a grid
 
     constructor(definition) {
@@ -65,8 +66,9 @@ export class Scene {
             const { axes, particles, links, component, base } = made;
             this.#force = made.force;
             this.#usesVelocity = made.forceUsesVelocity;
-            this.#heldForces = Boolean(definition.heldForces);
-            this.#tensionOnly = Boolean(definition.tensionOnly);
+            this.#heldForces = made.heldForces;
+            this.#tensionOnly = made.tensionOnly;
+            this.#noUndo = made.noUndo;
             this.#count = made.count;
             this.#pointer = withForce(this.#callback, () => library().scene_new(component, base));
             if (this.#pointer === 0)
@@ -99,7 +101,16 @@ export class Scene {
         const number = methodNumber(method);
         checkFinite("dt", dt);
         checkCount("steps", steps);
-        this.#checked(this.#call("scene_advance", this.#pointer, number, dt, steps), method, dt);
+        const { time } = this;
+        // The last evaluation of rkn8 is for the next step: if it throws, the steps have been taken.
+        const before = method === "rkn8" && this.#force && this.snapshot();
+        try {
+            this.#checked(this.#call("scene_advance", this.#pointer, number, dt, steps), method, dt);
+        } catch (error) {
+            if (before) this.restore(before);
+            else if (this.#noUndo || this.time !== time) this.#show(library().scene_moved(this.#pointer));
+            throw error;
+        }
         this.#show(library().scene_moved(this.#pointer));
     }
 
@@ -142,6 +153,7 @@ export class Scene {
             const [time, dropped] = memory.float64(pointer, 2);
             if (steps > 0)
                 this.#take(number, dt, steps, seconds, move && (() => move(time, dropped)), method);
+            else this.#call("scene_advance", this.#pointer, number, dt, 0); // sets impulses to 0
             this.#show(library().scene_end_frame(this.#pointer));
             return steps;
         });
@@ -260,9 +272,9 @@ export class Scene {
         const size = this.#call("scene_bytes", this.#pointer) >>> 0;
         const snapshot = Object.freeze({ time: this.time });
         const bytes = memory.uint8(this.#scene, size).slice();
-        const [clock, before] = this.#frames().map((array) => array.slice());
+        const [frames, before] = this.#frames().map((array) => array.slice());
         const positions = this.positions.slice();
-        snapshots.set(snapshot, { scene: this, bytes, force: this.#force, clock, before, positions });
+        snapshots.set(snapshot, { scene: this, bytes, force: this.#force, frames, before, positions });
         return snapshot;
     }
 
@@ -273,9 +285,9 @@ export class Scene {
         memory.uint8(this.#scene, kept.bytes.length).set(kept.bytes);
         this.#force = kept.force;
         library().scene_moved(this.#pointer);
-        const [clock, before] = this.#frames();
-        clock.set(kept.clock);
-        before.set(kept.before);
+        const [frames, before] = this.#frames();
+        frames.set(kept.frames);
+        if (!this.#moving) before.set(kept.before); // a frame replaces it, unless it fails
         this.positions.set(kept.positions);
     }
 
@@ -316,11 +328,11 @@ export class Scene {
         this.#call("spring_scene_set_time", this.#scene, t);
     }
 
-    /** The clock of frames with alpha, and the state before the last step, which is empty before the first frame. */
+    /** What wasm/scenes.c calls frames, and the state before the last step, which is empty before the first frame. */
     #frames() {
         const before = library().scene_before(this.#pointer);
         return [
-            memory.float64(library().scene_clock(this.#pointer), 4),
+            memory.float64(library().scene_frames(this.#pointer), 4 + 6 * 32),
             memory.float64(before, before ? this.axes * this.particles : 0),
         ];
     }
@@ -449,7 +461,7 @@ export class Scene {
             const status = this.#call("spring_scene_set_colliders", this.#scene, pointer, list.length);
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
             check(status !== outOfRange, "colliders.length", "at most what the definition has", list.length);
-            if (status === 0) return;
+            if (status === 0) return this.#frames()[0].fill(0, 4);
             const found = take(8);
             this.#call("spring_scene_check_colliders", this.#scene, pointer, list.length, found, found + 4);
             refuseCollider(list, found);
@@ -481,7 +493,7 @@ export class Scene {
         check(Number.isInteger(collider) && collider >= 0, "collider", "an index", collider, RangeError);
         return borrowed((take) => {
             const pointer = take(48);
-            const status = this.#call("spring_scene_impulses", this.#scene, pointer, collider, 1);
+            const status = this.#call("scene_impulse", this.#pointer, pointer, collider);
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
             if (status !== 0)
                 throw new RangeError(`collider: ${collider}, but the scene has fewer colliders now`);

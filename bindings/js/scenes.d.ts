@@ -431,6 +431,6 @@ export declare class Scene {
     getColliders(): Collider[];
     /** For each particle the colliders that it touched in the last step: bit i stands for collider i. */
     touching(first?: number, count?: number): Uint32Array;
-    /** What particles gave to a collider in the last call that advanced the scene. frame() may make several. */
+    /** What particles gave to a collider in the last advance() or frame(). Of a frame without steps it is 0. */
     impulse(collider: number): Impulse;
 }

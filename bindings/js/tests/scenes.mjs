@@ -657,6 +657,24 @@ await test("a mesh with a seam", () => {
     scene.free();
 });
 
+await test("soften() and tethers() throw where no links do what they promise", () => {
+    const sheet = { count: [5, 5], spacing: 10 };
+    const cloth = { ...grid({ ...sheet, stiffness: 1000, pinned: ["lastY"] }), mass: 0.01 };
+    const weightedLinks = bendGrid(sheet, 5e4, { pinned: cloth.pinned });
+    refused(
+        () => soften({ ...cloth, weightedLinks }, 1 / 120),
+        `RangeError: dt must be short enough for weightedLinks, which keep their stiffness, got ${1 / 120}`,
+    );
+    for (const [fraction, slack] of [
+        [1e308, 0],
+        [0.05, 1e308],
+    ])
+        refused(
+            () => tethers(cloth, fraction, slack),
+            `RangeError: fraction and slack must be small enough for links with finite values, got [${[fraction, slack]}]`,
+        );
+});
+
 await test("slack links do not push", () => {
     const two = { axes: 2, position: [0, 0, 1, 0], pinned: [1, 0] };
     for (const tensionOnly of [false, true]) {
@@ -714,6 +732,123 @@ await test("contacts: accelerating bodies, belts and impulses", () => {
     scene.advance("leapfrog", 1 / 128, 128);
     assert.ok(Math.abs(scene.get("position")[1] - 2) < 1e-12, "4/2 m in a second");
     scene.free();
+});
+
+await test("the impulses of a frame are those of all its steps", () => {
+    const body = { shape: "plane", normal: [0, 1, 0], velocity: [3, 0, 0], friction: 0.25 };
+    const definition = { position: [2, 0, 0], mass: [0.5], gravity: [0, -10, 0], colliders: 2 };
+    const [a, b] = [1, 2].map(() => new Scene(definition));
+    for (const scene of [a, b]) scene.setColliders([{ shape: "sphere", at: [0, 9, 0], radius: 1 }, body]);
+    const saved = a.snapshot();
+    const all = (scene) =>
+        [0, 1].flatMap((i) => Object.values(scene.impulse(i)).flatMap((each) => [...each]));
+    const close = (x, y) =>
+        x.forEach((each, i) => assert.ok(Math.abs(each - y[i]) < 1e-13, `${x}, not ${y}`));
+    for (const steps of [8, 1, 5]) {
+        assert.equal(a.frame("leapfrog", 1 / 128, steps / 128), steps);
+        b.advance("leapfrog", 1 / 128, steps);
+        close(all(a), all(b));
+        assert.ok(all(a)[7] < -0.03 * steps, String(all(a)));
+    }
+    const before = all(a);
+    const move = () => {
+        a.setColliders([body]);
+        assert.deepEqual([...a.impulse(0).linear], [0, 0, 0]);
+        throw new Error("mine");
+    };
+    assert.throws(() => a.frame("leapfrog", 1 / 128, 0.1, { move }), /mine/);
+    assert.deepEqual(all(a), before, "those of before a frame that fails");
+    const later = a.snapshot();
+    a.advance("leapfrog", 1 / 128, 5);
+    b.advance("leapfrog", 1 / 128, 5);
+    close(all(a), all(b));
+    a.restore(later);
+    assert.deepEqual(all(a), before);
+    assert.equal(a.frame("leapfrog", 1 / 128, 1e-4), 0);
+    assert.deepEqual(all(a), Array(12).fill(0), "a frame without steps");
+    for (const change of [
+        () => a.setColliders(a.getColliders()),
+        () => a.load(a.save()),
+        () => a.restore(saved),
+    ]) {
+        a.frame("leapfrog", 1 / 128, 0.1);
+        assert.notEqual(all(a)[7], 0);
+        change();
+        assert.deepEqual(all(a), Array(12).fill(0));
+    }
+    a.free();
+    b.free();
+});
+
+await test("a callback that throws in any evaluation changes nothing", () => {
+    const links = {
+        ...grid({ count: [4], spacing: 1, stiffness: 10, pinned: ["firstX"] }),
+        gravity: [0, -1, 0],
+    };
+    for (const method of methods)
+        for (const takes of [(s) => s.advance(method, 0.01, 3), (s) => s.frame(method, 0.01, 0.03)]) {
+            let left = Infinity;
+            const force = () => {
+                if (left-- === 0) throw new Error("mine");
+            };
+            const scene = new Scene({ ...links, methods: [method], force });
+            const all = () => [
+                scene.time,
+                ...scene.get("position"),
+                ...scene.get("velocity"),
+                ...scene.positions,
+            ];
+            scene.frame(method, 0.01, 0.025);
+            const before = all();
+            const first = scene.snapshot();
+            for (let evaluation = 0; left !== Infinity || evaluation === 0; evaluation++) {
+                left = evaluation;
+                try {
+                    takes(scene);
+                    left = Infinity;
+                } catch (error) {
+                    assert.equal(error.message, "mine");
+                    assert.deepEqual(all(), before, `${method}: evaluation ${evaluation}`);
+                    left = Infinity;
+                    takes(scene);
+                    scene.restore(first);
+                    left = 0;
+                }
+            }
+            scene.free();
+        }
+    const pinned = new Scene({ position: [0, 0, 0], velocity: [1, 0, 0], pinned: [1] });
+    pinned.force = () => {
+        throw new Error("mine");
+    };
+    assert.throws(() => pinned.advance("leapfrog", 0.5, 4), /mine/);
+    assert.deepEqual([pinned.time, pinned.positions[0]], [2, 2], "pinned particles move on, and are shown");
+    pinned.free();
+});
+
+await test("a frame that fails also undoes restore() and load() of move()", () => {
+    const run = (change) => {
+        const scene = new Scene({ position: [0, 0, 0], velocity: [1, 0, 0] });
+        scene.frame(0.015, { dt: 0.01 });
+        const [snapshot, state] = [scene.snapshot(), scene.save()];
+        for (let i = 0; i < 10; i++) scene.frame(0.013, { dt: 0.01 });
+        const move = () => {
+            change(scene, snapshot, state);
+            throw new Error("mine");
+        };
+        assert.throws(() => scene.frame(0.02, { dt: 0.01, move }), /mine/);
+        const failed = [scene.time, scene.positions[0]];
+        return [...failed, scene.frame(0.006, { dt: 0.01 }), scene.time, scene.positions[0]];
+    };
+    const wanted = run(() => {});
+    assert.deepEqual(
+        run((scene, snapshot) => scene.restore(snapshot)),
+        wanted,
+    );
+    assert.deepEqual(
+        run((scene, _, state) => scene.load(state)),
+        wanted,
+    );
 });
 
 await test("colliders at their present places", () => {

@@ -30,6 +30,15 @@ _Static_assert(sizeof(spring_collider) == 8 * 44 && offsetof(spring_collider, ax
                    offsetof(spring_collider, surface) == 8 * 37 && offsetof(spring_collider, mask) == 8 * 40,
                "spring_collider");
 
+enum { most_colliders = 32 }; /* of a scene */
+
+/* What frames depend on besides the scene and the state before the last step. */
+typedef struct frames {
+    spring_clock clock; /* dropped: by failed frames, and not yet in times[1] of a frame */
+    double alpha;
+    spring_impulse earlier[most_colliders]; /* of the last frame, without those of its last step */
+} frames;
+
 /* A scene and what is shown of it. */
 typedef struct shown {
     spring_scene *scene;
@@ -38,16 +47,16 @@ typedef struct shown {
     uint32_t axes;
     uint32_t component; /* of an element of `positions` that receives the first axis */
     size_t particles, links;
-    spring_clock clock; /* dropped: by failed frames, and not yet in times[1] of a frame */
-    double alpha;       /* scene.js copies it together with `clock` */
-    spring_clock next;  /* after the frame that has begun */
+    frames frames, kept; /* kept: before the frame that has begun */
+    spring_clock next;   /* after this frame */
     double next_alpha;
     bool in_frame;        /* whether a frame has begun that takes steps */
     double *before, *now; /* [particles*axes] the last two states of a frame; NULL before the first */
     float *positions;     /* [3*particles] */
 } shown;
 
-_Static_assert(offsetof(shown, alpha) == offsetof(shown, clock) + 8 * 3, "scene.js: #frames");
+_Static_assert(offsetof(frames, earlier) == 8 * 4 && sizeof(frames) == 8 * (4 + 6 * most_colliders),
+               "scene.js: #frames");
 
 /* What def_check() found. */
 static struct {
@@ -208,7 +217,21 @@ EXPORT(scene_bytes) size_t scene_bytes(const shown *s)
 
 EXPORT(scene_advance) spring_status scene_advance(shown *s, spring_method m, double dt, double n)
 {
-    return spring_scene_advance(s->scene, m, dt, (uint64_t)n);
+    const spring_status status = spring_scene_advance(s->scene, m, dt, (uint64_t)n);
+    if (status == SPRING_OK)
+        memset(s->frames.earlier, 0, sizeof s->frames.earlier);
+    return status;
+}
+
+/* The impulses of a collider in the last call that advanced the scene. */
+EXPORT(scene_impulse) spring_status scene_impulse(const shown *s, spring_impulse *out, uint32_t collider)
+{
+    const spring_status status = spring_scene_impulses(s->scene, out, collider, 1);
+    for (int a = 0; a < 3 && status == SPRING_OK; a++) {
+        out->linear[a] += s->frames.earlier[collider].linear[a];
+        out->angular[a] += s->frames.earlier[collider].angular[a];
+    }
+    return status;
 }
 
 /* Positions have changed otherwise than by steps: frames do not interpolate across that. A frame that has begun replaces both
@@ -247,31 +270,46 @@ double scene_begin_frame(shown *s, double elapsed, double dt, double most, doubl
 {
     if (s->before == NULL && !begin_frames(s))
         return -1;
-    s->next = s->clock;
+    s->next = s->frames.clock;
     const double n = (double)spring_clock_tick(&s->next, elapsed, dt, (uint64_t)most, &s->next_alpha);
     times[0] = n * dt + s->next.pending;
     times[1] = s->next.dropped;
     s->in_frame = n > 0;
-    if (s->in_frame)
+    if (s->in_frame) {
         memcpy(s->saved, s->scene, s->bytes);
+        s->kept = s->frames;
+    }
     return n;
 }
 
-/* Takes the steps of a frame, n > 0. */
+static uint32_t places_of(const shown *s, double at[most_colliders][3])
+{
+    spring_collider c[most_colliders];
+    uint32_t count = most_colliders;
+    spring_scene_get_colliders(s->scene, c, &count);
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(at[i], c[i].at, sizeof at[i]);
+    return count;
+}
+
+/* Takes the steps of a frame, n > 0. `before` stays as it is, because scene_undo_frame() may follow. */
 EXPORT(scene_take_frame) spring_status scene_take_frame(shown *s, spring_method m, double dt, double n)
 {
     spring_status status = spring_scene_advance(s->scene, m, dt, (uint64_t)n - 1);
-    if (status == SPRING_OK) {
-        spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
-        status = spring_scene_advance(s->scene, m, dt, 1);
-    }
-    if (status == SPRING_OK) {
-        double *const before = s->before;
-        s->before = s->now;
-        s->now = before;
-        spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
-        s->next.dropped = 0;
-    }
+    if (status != SPRING_OK)
+        return status;
+    spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+    spring_impulse *const j = s->frames.earlier;
+    double from[most_colliders][3], to[most_colliders][3];
+    const uint32_t count = places_of(s, from);
+    spring_scene_impulses(s->scene, j, 0, count);
+    status = spring_scene_advance(s->scene, m, dt, 1);
+    places_of(s, to);
+    for (uint32_t i = 0; i < count; i++)
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            j[i].angular[a] += (from[i][b] - to[i][b]) * j[i].linear[c] - (from[i][c] - to[i][c]) * j[i].linear[b];
+        }
     return status;
 }
 
@@ -281,15 +319,23 @@ static const float *show_between(shown *s)
     s->in_frame = false;
     for (size_t i = 0, k = 0; i < s->particles; i++)
         for (uint32_t a = 0; a < s->axes; a++, k++)
-            s->positions[3 * i + s->component + a] = (float)(s->before[k] + s->alpha * (s->now[k] - s->before[k]));
+            s->positions[3 * i + s->component + a] =
+                (float)(s->before[k] + s->frames.alpha * (s->now[k] - s->before[k]));
     return s->positions;
 }
 
 /* Ends a frame whose steps have been taken. */
 EXPORT(scene_end_frame) const float *scene_end_frame(shown *s)
 {
-    s->clock = s->next;
-    s->alpha = s->next_alpha;
+    if (s->in_frame) {
+        double *const before = s->before;
+        s->before = s->now;
+        s->now = before;
+        spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+        s->next.dropped = 0;
+    }
+    s->frames.clock = s->next;
+    s->frames.alpha = s->next_alpha;
     return show_between(s);
 }
 
@@ -298,15 +344,15 @@ EXPORT(scene_undo_frame) const float *scene_undo_frame(shown *s, double elapsed)
 {
     memcpy(s->scene, s->saved, s->bytes);
     spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
-    s->clock.dropped += elapsed;
+    s->frames = s->kept;
+    s->frames.clock.dropped += elapsed;
     return show_between(s);
 }
 
-/* What frames depend on besides the scene: the clock and alpha, and the state before the last step, NULL before the first
-   frame. */
-EXPORT(scene_clock) spring_clock *scene_clock(shown *s)
+/* What frames depend on besides the scene, and the state before the last step, NULL before the first frame. */
+EXPORT(scene_frames) frames *scene_frames(shown *s)
 {
-    return &s->clock;
+    return &s->frames;
 }
 
 EXPORT(scene_before) double *scene_before(const shown *s)
