@@ -86,9 +86,11 @@ export function animator({
         return spring[moves]?.() ?? (entry.stale || (failure === null && !spring.settled));
     }
 
-    return function animate(spring, draw, { reducedMotion = "jump", ...more } = {}) {
+    return function animate(spring, draw, options = {}) {
         check(typeof spring?.step === "function", "spring", "a Spring or Springs", spring, TypeError);
         check(typeof draw === "function", "draw", "a function", draw, TypeError);
+        check(Object(options) === options, "options", "an object", options, TypeError);
+        const { reducedMotion = "jump", ...more } = options;
         for (const name in more) check(false, "an option", "reducedMotion", name);
         const known = reducedMotion === "jump" || reducedMotion === "run";
         check(known, "reducedMotion", '"jump" or "run"', reducedMotion, TypeError);

@@ -20,10 +20,13 @@ export function checkUpTo(name, value, most) {
     check(good, name, `an integer from 0 to ${most}`, value);
 }
 
-export function checkKnown(options, known) {
-    check(typeof options === "object" && options !== null, "definition", "an object", options, TypeError);
-    for (const name of Object.keys(options))
-        if (!known.includes(name)) throw new TypeError(`the option ${name} is unknown`);
+export const checkObject = (name, value) =>
+    check(typeof value === "object" && value !== null, name, "an object", value, TypeError);
+
+export function checkKnown(name, options, known) {
+    checkObject(name, options);
+    for (const option of Object.keys(options))
+        if (!known.includes(option)) throw new TypeError(`the option ${option} is unknown`);
 }
 
 export function checkArray(name, value, length) {
@@ -35,11 +38,12 @@ export function checkNumbers(name, values) {
     for (let i = 0; i < values.length; i++) checkFinite(`${name}[${i}]`, values[i]);
 }
 
-/** A vector may omit the axes that a scene does not have. */
+/** A vector may omit the axes that a scene does not have. Returns it as an array. */
 export function checkVector(name, vector, axes) {
     checkArray(name, vector);
     const { length } = vector;
     check(length === 3 || length === axes, `${name}.length`, `${axes}${axes < 3 ? " or 3" : ""}`, length);
+    return Array.from(vector);
 }
 
 let table; // of methods, by name
@@ -65,11 +69,24 @@ export function methodNumber(name) {
     return method.number;
 }
 
-/** Copies numbers into the module. */
-export function lend(take, values, Type = "float64", size = 8) {
-    const pointer = take(size * values.length);
-    memory[Type](pointer, values.length).set(values);
+const checkNumber = (name, value, what = "a number") => check(typeof value === "number", name, what, value);
+
+/** Copies numbers into the module. Getters of elements may create scenes, so they run before memory is taken. */
+export function lend(take, values, name, Type = "float64", size = 8) {
+    const numbers = ArrayBuffer.isView(values) ? values : Array.from(values);
+    for (let i = 0; i < numbers.length; i++)
+        if (typeof numbers[i] !== "number") checkNumber(`${name}[${i}]`, numbers[i], wanted[name]);
+    const pointer = take(size * numbers.length);
+    memory[Type](pointer, numbers.length).set(numbers);
     return pointer;
+}
+
+/** Copies which particles are pinned; 0: none is. */
+export function lendPinned(take, pinned, particles) {
+    if (!pinned) return 0;
+    checkArray("pinned", pinned, particles);
+    const flags = Array.from(pinned, (pin) => (pin ? 1 : 0));
+    return lend(take, flags, "pinned", "uint8", 1);
 }
 
 const perLink = ["rest", "stiffness", "damping"];
@@ -80,11 +97,11 @@ export const weightedBytes = 72; // of spring_weighted_link
 /** How many links there are: of { ends, rest, stiffness, damping, flags } or of a list of { a, b, rest ... }. */
 function countOf(links) {
     if (Array.isArray(links)) {
-        for (const link of links) checkKnown(link, ["a", "b", ...perLink, "flags"]);
+        for (const [i, link] of links.entries())
+            checkKnown(`links[${i}]`, link, ["a", "b", ...perLink, "flags"]);
         return links.length;
     }
-    check(typeof links === "object" && links !== null, "links", "an object or an array", links, TypeError);
-    checkKnown(links, ["ends", ...perLink, "flags"]);
+    checkKnown("links", links, ["ends", ...perLink, "flags"]);
     checkArray("links.ends", links.ends);
     check(links.ends.length % 2 === 0, "links.ends.length", "even", links.ends.length);
     const count = links.ends.length / 2;
@@ -98,7 +115,10 @@ function countOf(links) {
 
 /** The value of a field of link i, as it is given. */
 function linkValue(links, i, field) {
-    if (Array.isArray(links)) return links[i][field] ?? (optional.has(field) ? 0 : undefined);
+    if (Array.isArray(links)) {
+        const { [field]: value = optional.has(field) ? 0 : undefined } = links[i];
+        return value;
+    }
     if (field === "a" || field === "b") return links.ends[2 * i + (field === "a" ? 0 : 1)];
     const value = links[field] ?? 0;
     return typeof value === "number" ? value : value[i];
@@ -107,9 +127,8 @@ function linkValue(links, i, field) {
 /** Links in the layout of spring_link: [pointer, count]. Messages name the first of them `links[first]`. */
 export function lendLinks(take, links, first = 0) {
     const count = countOf(links);
-    const pointer = take(linkBytes * count);
-    const ends = memory.uint32(pointer, 10 * count);
-    const values = memory.float64(pointer, 5 * count);
+    const values = new Float64Array(5 * count);
+    const ends = new Uint32Array(values.buffer);
     for (let i = 0; i < count; i++)
         for (const [k, field] of ["a", "b"].entries()) {
             const end = linkValue(links, i, field);
@@ -120,7 +139,7 @@ export function lendLinks(take, links, first = 0) {
     for (const [k, field] of perLink.entries())
         for (let i = 0; i < count; i++) {
             const value = linkValue(links, i, field);
-            check(typeof value === "number", `links[${first + i}].${field}`, "a number", value, TypeError);
+            checkNumber(`links[${first + i}].${field}`, value);
             values[5 * i + 1 + k] = value;
         }
     for (let i = 0; i < count; i++) {
@@ -128,13 +147,12 @@ export function lendLinks(take, links, first = 0) {
         check([0, 1, 2, 3].includes(value), `links[${first + i}].flags`, "0, TENSION_ONLY or TETHER", value);
         ends[10 * i + 8] = value;
     }
-    return [pointer, count];
+    return [lend(take, ends, "links", "uint32", 4), count];
 }
 
 /** Weighted links in the layout of spring_weighted_link: [pointer, count]. */
 export function lendWeightedLinks(take, links) {
-    check(typeof links === "object" && links !== null, "weightedLinks", "an object", links, TypeError);
-    checkKnown(links, ["particles", "weights", ...perLink]);
+    checkKnown("weightedLinks", links, ["particles", "weights", ...perLink]);
     checkArray("weightedLinks.particles", links.particles);
     const { length } = links.particles;
     check(length % 4 === 0, "weightedLinks.particles.length", "a multiple of 4", length);
@@ -144,22 +162,25 @@ export function lendWeightedLinks(take, links) {
     const each = Object.entries({ rest, stiffness, damping });
     for (const [name, value] of each)
         if (typeof value !== "number") checkArray(`weightedLinks.${name}`, value, count);
-    const pointer = take(weightedBytes * count);
-    const words = memory.uint32(pointer, 18 * count);
-    const values = memory.float64(pointer, 9 * count);
+    const values = new Float64Array(9 * count);
+    const words = new Uint32Array(values.buffer);
     for (let i = 0; i < length; i++) {
         const [row, k] = [Math.floor(i / 4), i % 4];
         const particle = links.particles[i];
         const place = `weightedLinks.particles[${i}]`;
         check(Number.isInteger(particle) && particle >= 0, place, "the index of a particle", particle);
         words[18 * row + k] = Math.min(particle, 0xffffffff);
-        values[9 * row + 2 + k] = links.weights[i];
+        const weight = links.weights[i];
+        checkNumber(`weightedLinks.weights[${i}]`, weight);
+        values[9 * row + 2 + k] = weight;
     }
     for (let i = 0; i < count; i++)
-        each.forEach(
-            ([, value], k) => (values[9 * i + 6 + k] = typeof value === "number" ? value : value[i]),
-        );
-    return [pointer, count];
+        for (const [k, [name, value]] of each.entries()) {
+            const one = typeof value === "number" ? value : value[i];
+            checkNumber(`weightedLinks.${name}[${i}]`, one);
+            values[9 * i + 6 + k] = one;
+        }
+    return [lend(take, words, "weightedLinks", "uint32", 4), count];
 }
 
 /** Weighted links in the layout of spring_weighted_link as { particles, weights, rest, stiffness, damping }. */
@@ -264,8 +285,7 @@ export function lendColliders(take, colliders, axes) {
     const pointer = take(colliderBytes * colliders.length);
     colliders.forEach((collider, i) => {
         const name = `colliders[${i}]`;
-        check(typeof collider === "object" && collider !== null, name, "an object", collider, TypeError);
-        checkKnown(collider, ["shape", "normal", "mask", ...fields.map(([field]) => field)]);
+        checkKnown(name, collider, ["shape", "normal", "mask", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
         for (const field of special)
@@ -279,15 +299,14 @@ export function lendColliders(take, colliders, axes) {
             const place = `${name}.${field}`;
             if (count === 1) checkFinite(place, value);
             else {
-                if (count === 3) checkVector(place, value, axes);
+                if (count === 3) checkVector(place, value, field.startsWith("spin") ? 3 : axes);
                 else checkArray(place, value, count);
                 checkNumbers(place, value);
             }
             for (let k = 0; k < count; k++) numbers.push(count === 1 ? value : (value[k] ?? 0));
             if (field === "axes" && shape === 0) {
                 const { normal = [0, 1, 0] } = collider;
-                checkVector(`${name}.normal`, normal, axes);
-                const direction = unit(normal);
+                const direction = unit(checkVector(`${name}.normal`, normal, axes));
                 check(direction, `${name}.normal`, "a direction", normal, RangeError);
                 numbers.splice(6, 3, ...direction);
             }
@@ -351,7 +370,7 @@ function refuse(definition, axes) {
     if (array === "weighted_link") {
         const what = { particle: "indices of different particles", weight: "finite numbers whose sum is 0" };
         const { [part]: values, particles, weights } = definition.weightedLinks;
-        const row = (list) => list.slice(4 * i, 4 * i + 4);
+        const row = (list) => Array.from(list).slice(4 * i, 4 * i + 4);
         const value =
             part === "particle" ? row(particles) : part === "weight" ? row(weights) : (values?.[i] ?? values);
         check(false, `weightedLinks[${i}].${part}`, what[part] ?? wanted[part], value, RangeError);
@@ -373,7 +392,7 @@ function refuse(definition, axes) {
 
 /** Fills the definition in the module, and returns what of it JavaScript needs. `take` as in borrowed(). */
 export function define(take, definition) {
-    checkKnown(definition, names);
+    checkKnown("definition", definition, names);
     const { axes = 3, position, velocity, mass = 1, pinned, links = [], weightedLinks } = definition;
     const { gravity = [0, 0, 0], drag = 0, maxSpeed = 0, methods = [] } = definition;
     const { force = null, forceUsesVelocity = false, component = 0, base } = definition;
@@ -390,10 +409,10 @@ export function define(take, definition) {
         check(all, "count", "that of all particles", count, RangeError);
     }
     if (velocity) checkArray("velocity", velocity, position.length);
-    if (pinned) checkArray("pinned", pinned, particles);
     if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
     else checkArray("mass", mass, particles);
-    checkVector("gravity", gravity, axes);
+    const [x = 0, y = 0, z = 0] = checkVector("gravity", gravity, axes);
+    checkNumbers("gravity", gravity);
     checkArray("methods", methods);
     if (base) {
         checkArray("base", base, 3 * particles);
@@ -402,28 +421,14 @@ export function define(take, definition) {
     checkUpTo("component", component, 3 - axes);
     check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
     let set = forceUsesVelocity ? 0 : forceIgnoresVelocity; // also without a force, which may be set later
+    const used = {};
     for (const [name, flag] of Object.entries({ ...flags, forceUsesVelocity: 0 })) {
         const value = definition[name] ?? false;
         check(typeof value === "boolean", name, "a boolean", value, TypeError);
         if (value) set |= flag;
+        used[name] = value;
     }
     const bits = Array.from(methods, (name) => 1 << methodNumber(name)).reduce((all, bit) => all | bit, 0);
-    const optional = (values, Type, size) => (values ? lend(take, values, Type, size) : 0);
-    const [linkPointer, linkCount] = lendLinks(take, links);
-    const [weightedPointer, weightedCount] = weightedLinks ? lendWeightedLinks(take, weightedLinks) : [0, 0];
-    const pins = pinned && Array.from(pinned, (pin) => (pin ? 1 : 0));
-    const { def_begin, def_links, def_contacts, def_weighted_links, def_forces, def_check } = library();
-    def_begin(
-        axes,
-        set,
-        bits,
-        particles,
-        lend(take, position),
-        optional(velocity),
-        typeof mass === "number" ? 0 : lend(take, mass),
-        typeof mass === "number" ? mass : 0,
-        optional(pins, "uint8", 1),
-    );
     const radii = typeof particleRadius === "number" ? undefined : particleRadius;
     const radius = radii ? 0 : particleRadius;
     for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius: radius }))
@@ -433,30 +438,35 @@ export function define(take, definition) {
     Array.from(particleMask ?? [], (mask, i) => checkUpTo(`particleMask[${i}]`, mask, 0xffffffff));
     checkUpTo("colliders", colliders, 32);
     check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
+    // Getters may create scenes, so the one definition in the module is filled when all arrays have been read.
+    const given = (name, values, ...type) =>
+        values && typeof values === "object" ? lend(take, values, name, ...type) : 0;
+    const [linkPointer, linkCount] = lendLinks(take, links);
+    const [weightedPointer, weightedCount] = weightedLinks ? lendWeightedLinks(take, weightedLinks) : [0, 0];
+    const pins = lendPinned(take, pinned, particles);
+    const state = Object.entries({ position, velocity, mass }).map(([name, values]) => given(name, values));
+    const contacts = [
+        given("particleRadius", radii),
+        given("particleFriction", particleFriction),
+        given("particleMask", particleMask, "uint32", 4),
+    ];
+    const basePointer = given("base", base, "float32", 4);
+    const { def_begin, def_links, def_contacts, def_weighted_links, def_forces, def_check } = library();
+    def_begin(axes, set, bits, particles, ...state, typeof mass === "number" ? mass : 0, pins);
     def_links(linkCount, linkPointer);
-    def_contacts(
-        colliders,
-        radius,
-        optional(radii),
-        optional(particleFriction),
-        optional(particleMask, "uint32", 4),
-    );
+    def_contacts(colliders, radius, ...contacts);
     def_weighted_links(weightedCount, weightedPointer);
-    const [x = 0, y = 0, z = 0] = gravity;
     def_forces(x, y, z, drag, maxSpeed, force !== null);
     if (def_check() !== 0) refuse({ ...definition, mass }, axes);
     return {
+        ...used,
         axes,
         particles,
         links: linkCount,
         linkPointer,
         force,
-        forceUsesVelocity,
         component,
         count,
-        base: optional(base, "float32", 4),
-        heldForces: (set & flags.heldForces) > 0,
-        tensionOnly: (set & flags.tensionOnly) > 0,
-        noUndo: (set & flags.noUndo) > 0,
+        base: basePointer,
     };
 }

@@ -22,7 +22,7 @@ const options = "count axes height spacing stretch families stiffness damping pi
 
 /** Positions, pins and links of a grid, as a part of a definition. */
 export function grid(definition) {
-    checkKnown(definition, options);
+    checkKnown("definition", definition, options);
     const { count, height = false, axes = height ? 1 : 3, spacing, stretch = 1 } = definition;
     const { stiffness, damping = 0, families: linked = ["structural"], pinned = [] } = definition;
     checkArray("count", count);

@@ -7,6 +7,7 @@ import {
     checkNumbers,
     define,
     lend,
+    lendPinned,
     linkBytes,
     linksAt,
     weightedBytes,
@@ -20,18 +21,11 @@ export const TENSION_ONLY = 1;
 export const TETHER = 2;
 
 function checkBend(rigidity, options, known) {
-    checkKnown(options, known);
+    checkKnown("options", options, known);
     const { dampingTime = 0 } = options;
     for (const [name, value] of Object.entries({ rigidity, dampingTime })) checkNotNegative(name, value);
     return dampingTime;
 }
-
-const flagsOf = (take, pinned, particles) => {
-    if (!pinned) return 0;
-    checkArray("pinned", pinned, particles);
-    const flags = Array.from(pinned, (pin) => (pin ? 1 : 0));
-    return lend(take, flags, "uint8", 1);
-};
 
 /** Calls make(out, count), first to count. Returns a pointer to what is made, and their number. */
 function counted(take, bytes, make, name, what) {
@@ -52,7 +46,7 @@ export function bendRod(position, rigidity, options = {}) {
     const particles = position.length / axes;
     check(Number.isInteger(particles), "position.length", `a multiple of ${axes}`, position.length);
     return borrowed((take) => {
-        const [x, pins] = [lend(take, position), flagsOf(take, pinned, particles)];
+        const [x, pins] = [lend(take, position, "position"), lendPinned(take, pinned, particles)];
         const { spring_bend_rod: make } = library();
         const rod = (out, count) => make(particles, axes, x, pins, rigidity, dampingTime, out, count);
         const what = "finite, and different from one particle to the next";
@@ -62,7 +56,7 @@ export function bendRod(position, rigidity, options = {}) {
 
 export function bendGrid(definition, rigidity, options = {}) {
     const dampingTime = checkBend(rigidity, options, ["pinned", "diagonals", "dampingTime"]);
-    checkKnown(definition, ["count", "spacing"]);
+    checkKnown("grid", definition, ["count", "spacing"]);
     const { count, spacing } = definition;
     const { diagonals = true, pinned } = options;
     checkArray("count", count);
@@ -71,7 +65,7 @@ export function bendGrid(definition, rigidity, options = {}) {
     checkPositive("spacing", spacing);
     check(x * y * z < 2 ** 32, "count", "small enough for 32-bit indices", [x, y, z], RangeError);
     return borrowed((take) => {
-        const pins = flagsOf(take, pinned, x * y * z);
+        const pins = lendPinned(take, pinned, x * y * z);
         library().grid_begin(x, y, z, 3, false, spacing, 1, 1, 0, 0, 0, take(8));
         const { grid_bend: make } = library();
         const sheet = (out, number) => make(pins, diagonals, rigidity, dampingTime, out, number);
@@ -90,14 +84,14 @@ function lendTriangles(take, triangles) {
             triangles[i],
         );
     const corners = Array.from(triangles, (corner) => Math.min(corner, 0xffffffff));
-    return lend(take, corners, "uint32", 4);
+    return lend(take, corners, "triangles", "uint32", 4);
 }
 
 function lendVertices(take, position) {
     checkArray("position", position);
     check(position.length % 3 === 0, "position.length", "a multiple of 3", position.length);
     checkNumbers("position", position);
-    return lend(take, position);
+    return lend(take, position, "position");
 }
 
 export function bendMesh(position, triangles, rigidity, options = {}) {
@@ -105,7 +99,7 @@ export function bendMesh(position, triangles, rigidity, options = {}) {
     return borrowed((take) => {
         const [x, corners] = [lendVertices(take, position), lendTriangles(take, triangles)];
         const [particles, count] = [position.length / 3, triangles.length / 3];
-        const pins = flagsOf(take, options.pinned, particles);
+        const pins = lendPinned(take, options.pinned, particles);
         const work = take(4 * (particles + 6 * count + 1));
         const { spring_bend_mesh: make } = library();
         const mesh = (out, number) =>
@@ -133,7 +127,7 @@ export function tethers(definition, fraction = 0.05, slack = 0) {
 }
 
 export function fromMesh(definition) {
-    checkKnown(definition, ["position", "triangles", "stiffness", "damping", "weld"]);
+    checkKnown("mesh", definition, ["position", "triangles", "stiffness", "damping", "weld"]);
     const { position, triangles, stiffness, damping = 0, weld = 0 } = definition;
     for (const [name, value] of Object.entries({ stiffness, damping })) checkNotNegative(name, value);
     check(weld === null || (isNumber(weld) && weld >= 0), "weld", "null or a finite number >= 0", weld);

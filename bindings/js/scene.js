@@ -5,6 +5,7 @@ import {
     checkCount,
     checkKnown,
     checkNumbers,
+    checkObject,
     checkUpTo,
     checkVector,
     colliderBytes,
@@ -50,26 +51,16 @@ export class Scene {
     #pointer = 0; // of what wasm/scenes.c calls shown
     #scene = 0; // of the scene of the C library
     #force;
-    #usesVelocity;
     #busy = false;
     #moving = false; // during a frame
     #error; // of the callback
     #views = { buffer: null }; // for the callback, by pointer
-    #heldForces;
-    #tensionOnly;
-    #noUndo;
-    #count; // of a grid
+    #definition; // what define() returns, without the force
 
     constructor(definition) {
         borrowed((take) => {
-            const made = define(take, definition);
-            const { axes, particles, links, component, base } = made;
-            this.#force = made.force;
-            this.#usesVelocity = made.forceUsesVelocity;
-            this.#heldForces = made.heldForces;
-            this.#tensionOnly = made.tensionOnly;
-            this.#noUndo = made.noUndo;
-            this.#count = made.count;
+            ({ force: this.#force, ...this.#definition } = define(take, definition));
+            const { axes, particles, links, component, base } = this.#definition;
             this.#pointer = withForce(this.#callback, () => library().scene_new(component, base));
             if (this.#pointer === 0)
                 throw new RangeError(`no memory for a scene of ${particles} particles and ${links} links`);
@@ -108,7 +99,8 @@ export class Scene {
             this.#checked(this.#call("scene_advance", this.#pointer, number, dt, steps), method, dt);
         } catch (error) {
             if (before) this.restore(before);
-            else if (this.#noUndo || this.time !== time) this.#show(library().scene_moved(this.#pointer));
+            else if (this.#definition.noUndo || this.time !== time)
+                this.#show(library().scene_moved(this.#pointer));
             throw error;
         }
         this.#show(library().scene_moved(this.#pointer));
@@ -116,8 +108,10 @@ export class Scene {
 
     frame(...values) {
         if (typeof values[0] !== "string" || typeof (values[1] ?? {}) === "object") {
-            const [elapsed, { method = "leapfrog", dt = this.#usualStep(method), ...options } = {}] = values;
-            return this.#frame(method, dt, elapsed, options);
+            const [elapsed, options = {}] = values;
+            checkObject("options", options);
+            const { method = "leapfrog", dt = this.#usualStep(method), ...others } = options;
+            return this.#frame(method, dt, elapsed, others);
         }
         const [method, dt, elapsed, options = {}] = values;
         return this.#frame(
@@ -130,7 +124,9 @@ export class Scene {
 
     /** A part of 1/60 s: at most 1/240 s, and half of the stable step or a quarter, as games.md has it. */
     #usualStep(method) {
-        const most = Math.min(1 / 240, this.stableStep(method) / (this.#tensionOnly ? 4 : 2));
+        const stable = this.stableStep(method);
+        check(stable > 0, "dt", `given, because the stable step of ${method} is 0`);
+        const most = Math.min(1 / 240, stable / (this.#definition.tensionOnly ? 4 : 2));
         return 1 / 60 / Math.ceil(1 / 60 / most);
     }
 
@@ -138,7 +134,7 @@ export class Scene {
         const number = methodNumber(method);
         checkPositive("dt", dt);
         checkFinite("elapsed", elapsed);
-        checkKnown(options, ["mostSteps", "move"]);
+        checkKnown("options", options, ["mostSteps", "move"]);
         const { mostSteps = Math.max(1, Math.floor(0.25 / dt)), move = null } = options;
         const few = Number.isInteger(mostSteps) && mostSteps >= 1 && mostSteps < 2 ** 32;
         if (options.mostSteps === undefined) check(few, "dt", "at least 1e-10 without mostSteps", dt);
@@ -164,7 +160,8 @@ export class Scene {
         const force = this.#force;
         this.#moving = true;
         try {
-            move?.();
+            const result = move?.();
+            check(typeof result?.then !== "function", "move", "synchronous", result, TypeError);
             this.#checked(this.#call("scene_take_frame", this.#pointer, number, dt, steps), method, dt);
         } catch (error) {
             this.#show(library().scene_undo_frame(this.#pointer, seconds));
@@ -218,7 +215,7 @@ export class Scene {
         this.#checkRange(first, count, this.particles);
         checkNumbers(quantity, values);
         borrowed((take) => {
-            const pointer = lend(take, values);
+            const pointer = lend(take, values, quantity);
             this.#changed(this.#call("spring_scene_set", this.#scene, number, pointer, 0, first, count));
         });
         if (number === 0) this.#show(library().scene_moved(this.#pointer));
@@ -233,8 +230,8 @@ export class Scene {
     }
 
     #gridCount() {
-        if (!this.#count) throw new TypeError("the scene is defined without the count of a grid");
-        return this.#count;
+        if (!this.#definition.count) throw new TypeError("the scene is defined without the count of a grid");
+        return this.#definition.count;
     }
 
     transform(matrix) {
@@ -246,16 +243,17 @@ export class Scene {
                 ? matrix
                 : Array.from({ length: 12 }, (_, k) => matrix[4 * (k % 4) + Math.floor(k / 4)]);
         borrowed((take) =>
-            this.#checked(this.#call("spring_scene_transform", this.#scene, lend(take, rows))),
+            this.#checked(this.#call("spring_scene_transform", this.#scene, lend(take, rows, "matrix"))),
         );
         this.#show(library().scene_moved(this.#pointer));
     }
 
     setGravity(gravity) {
-        checkVector("gravity", gravity, this.axes);
-        checkNumbers("gravity", gravity);
-        const [x = 0, y = 0, z = 0] = gravity;
-        borrowed((take) => this.#call("spring_scene_set_gravity", this.#scene, lend(take, [x, y, z])));
+        const vector = [...checkVector("gravity", gravity, this.axes), 0, 0].slice(0, 3);
+        checkNumbers("gravity", vector);
+        borrowed((take) =>
+            this.#call("spring_scene_set_gravity", this.#scene, lend(take, vector, "gravity")),
+        );
     }
 
     get force() {
@@ -350,7 +348,7 @@ export class Scene {
     #pins(first, count, pinned) {
         this.#checkRange(first, count, this.particles);
         borrowed((take) => {
-            const pointer = lend(take, Array(count).fill(pinned), "uint8", 1);
+            const pointer = lend(take, Array(count).fill(pinned), "pinned", "uint8", 1);
             this.#changed(this.#call("spring_scene_set_pinned", this.#scene, first, count, pointer));
         });
     }
@@ -363,7 +361,7 @@ export class Scene {
             checkPositive("duration", duration);
         }
         borrowed((take) => {
-            const pointer = target === null ? 0 : lend(take, target);
+            const pointer = target === null ? 0 : lend(take, target, "target");
             const status = this.#call("spring_scene_drive", this.#scene, particle, pointer, duration);
             check(status === 0, "particle", "pinned, and its velocity finite", particle, RangeError);
         });
@@ -374,7 +372,7 @@ export class Scene {
         this.#checkRange(first, mass.length, this.particles);
         for (let i = 0; i < mass.length; i++) checkPositive(`mass[${i}]`, mass[i]);
         borrowed((take) => {
-            this.#edit("spring_scene_set_mass", first, mass.length, lend(take, mass), 8, (i) =>
+            this.#edit("spring_scene_set_mass", first, mass.length, lend(take, mass, "mass"), 8, (i) =>
                 check(false, `mass[${i}]`, `${wanted.mass}, also times stiffness or drag`, mass[i]),
             );
         });
@@ -401,7 +399,10 @@ export class Scene {
     }
 
     setLink(index, changes) {
-        this.#setLinks([{ ...this.getLink(index), ...changes }], index, index);
+        checkObject("changes", changes);
+        const link = this.getLink(index);
+        for (const field in changes) if (changes[field] !== undefined) link[field] = changes[field];
+        this.#setLinks([link], index, index);
     }
 
     setLinks(links, first = 0) {
@@ -425,11 +426,14 @@ export class Scene {
     tear(stretch) {
         const limits = typeof stretch !== "number";
         if (limits) checkArray("stretch", stretch, this.links);
-        for (const each of limits ? stretch : [stretch]) check(each >= 0, "stretch", "a number >= 0", each);
+        Array.from(limits ? stretch : [stretch], (each, i) => {
+            const name = limits ? `stretch[${i}]` : "stretch";
+            check(typeof each === "number" && each >= 0, name, "a number >= 0", each);
+        });
         return borrowed((take) => {
             const torn = take(4 * this.links);
             const count = take(4);
-            const limit = limits ? lend(take, stretch) : 0;
+            const limit = limits ? lend(take, stretch, "stretch") : 0;
             const one = limits ? 0 : stretch;
             this.#changed(this.#call("spring_scene_tear", this.#scene, one, limit, torn, this.links, count));
             return memory.uint32(torn, memory.uint32(count, 1)[0]).slice();
@@ -493,12 +497,13 @@ export class Scene {
         check(Number.isInteger(collider) && collider >= 0, "collider", "an index", collider, RangeError);
         return borrowed((take) => {
             const pointer = take(48);
-            const status = this.#call("scene_impulse", this.#pointer, pointer, collider);
+            const status = this.#call("spring_scene_impulses", this.#scene, pointer, collider, 1);
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
             if (status !== 0)
                 throw new RangeError(`collider: ${collider}, but the scene has fewer colliders now`);
-            const [linear, angular] = [pointer, pointer + 24].map((at) => memory.float64(at, 3).slice());
-            return { linear, angular };
+            const earlier = this.#frames()[0].subarray(4 + 6 * collider);
+            const all = memory.float64(pointer, 6).map((each, i) => each + earlier[i]);
+            return { linear: all.slice(0, 3), angular: all.slice(3) };
         });
     }
 
@@ -525,7 +530,7 @@ export class Scene {
             Array.from(memory.uint32(pointers, this.axes), (pointer) => this.#viewOf(pointer));
         const forces = arrays(force);
         try {
-            const velocities = this.#usesVelocity ? arrays(velocity) : undefined;
+            const velocities = this.#definition.forceUsesVelocity ? arrays(velocity) : undefined;
             const result = this.#force(t, arrays(position), forces, velocities);
             check(typeof result?.then !== "function", "force", "synchronous", result, TypeError);
             // Forces that were written after memory grew are lost.
@@ -551,7 +556,8 @@ export class Scene {
     #quantity(name) {
         const number = quantities.indexOf(name);
         check(number >= 0, "quantity", `one of ${quantities.join(", ")}`, name, TypeError);
-        if (number === 2 && !this.#heldForces) throw new TypeError("the scene is defined without heldForces");
+        if (number === 2 && !this.#definition.heldForces)
+            throw new TypeError("the scene is defined without heldForces");
         return number;
     }
 

@@ -97,7 +97,10 @@ export type Force = (
     velocity: readonly Float64Array[] | undefined,
 ) => void;
 
-/** What every collider has. Vectors have three numbers, or one for each axis of the scene. */
+/**
+ * What every collider has. Vectors have three numbers, or one for each axis of the scene. `spin` and `spinAcceleration` always
+ * have three.
+ */
 export interface Body {
     /** [m] a point of the plane; the centre; or one end of a capsule; default [0, 0, 0] */
     at?: ArrayLike<number>;
@@ -168,7 +171,7 @@ export interface FrameOptions {
      * Moves pins and colliders. It is called once before the steps of a frame, and not if no step is due. `time` [s] is from
      * the time of the scene to the end of the frame: drive(i, target, time) with the present target. `dropped` [s] has been
      * dropped before that, by this frame or by frames that failed: transform() moves the scene by the motion of the target in this time.
-     * If move() throws, the frame fails.
+     * If move() throws or is async, the frame fails.
      */
     move?: ((time: number, dropped: number) => void) | null;
 }
@@ -394,7 +397,7 @@ export declare class Scene {
      * The state in a portable format, for load() in another page or process, or in C, Python or LuaJIT. The time of frame() that
      * no step has used is not part of it.
      */
-    save(): Uint8Array;
+    save(): ReturnType<Uint8Array["slice"]>;
     /**
      * Loads a state that was saved anywhere, from a scene of the same definition, which then continues bit-identically. It
      * throws if the state is damaged or does not fit, and names what differs. Values that it cannot check must be equal: drag,

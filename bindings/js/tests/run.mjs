@@ -480,6 +480,11 @@ await test("animate: changes and errors in callbacks", () => {
         () => it.animate(new Spring(0), () => {}, { reducedMotions: "run" }),
         'TypeError: an option must be reducedMotion, got "reducedMotions"',
     );
+    for (const options of [null, 3])
+        refused(
+            () => it.animate(new Spring(0), () => {}, options),
+            `TypeError: options must be an object, got ${options}`,
+        );
     for (const none of [undefined, null, 3, [lead, follower]])
         refused(() => it.animate(none, () => {}), "TypeError: spring must be a Spring or Springs, got...");
 });

@@ -1339,6 +1339,146 @@ await test("edits that are refused name field, value and index, and change nothi
     scene.free();
 });
 
+await test("elements of arrays must be numbers, and messages name option and index", () => {
+    const two = { position: [0, 0, 0, 1, 0, 0] };
+    const scene = new Scene({ ...two, links: [{ a: 0, b: 1, rest: 1, stiffness: 5 }], editable: true });
+    const weighted = { particles: [0, 1, 0, 0], weights: [1, -1, 0, 0], stiffness: [3] };
+    const rows = [
+        ["position", [0, 0, 0, 1, 0, 0], 4, "a finite number", (position) => new Scene({ position })],
+        ["velocity", [0, 0, 0, 1, 0, 0], 5, "a finite number", (velocity) => new Scene({ ...two, velocity })],
+        ["mass", [1, 2], 1, "a finite number > 0 with a...", (mass) => new Scene({ ...two, mass })],
+        [
+            "particleRadius",
+            [1, 2],
+            0,
+            "a finite number >= 0",
+            (each) => new Scene({ ...two, particleRadius: each }),
+        ],
+        [
+            "particleFriction",
+            [1, 2],
+            1,
+            "a finite number >= 0",
+            (each) => new Scene({ ...two, particleFriction: each }),
+        ],
+        ["gravity", [0, 0, 0], 2, "a finite number", (gravity) => new Scene({ ...two, gravity })],
+        ["gravity", [0, 0, 0], 1, "a finite number", (gravity) => scene.setGravity(gravity)],
+        ["stretch", [2], 0, "a number >= 0", (stretch) => scene.tear(stretch)],
+        ["position", [0, 0, 0, 1, 0, 0, 2, 0, 0], 3, "a finite number", (position) => bendRod(position, 1)],
+        ...["weights", "stiffness"].map((name) => [
+            `weightedLinks.${name}`,
+            weighted[name],
+            0,
+            "a number",
+            (each) => new Scene({ ...two, weightedLinks: { ...weighted, [name]: each } }),
+        ]),
+    ];
+    for (const [name, good, i, what, use] of rows) {
+        for (const [wrong, shown] of [
+            [null, "null"],
+            ["1", '"1"'],
+            [true, "true"],
+            [1n, "1n"],
+        ]) {
+            const end = what.endsWith("...") ? "" : `, got ${shown}`;
+            refused(
+                () => use(Object.assign([...good], { [i]: wrong })),
+                `TypeError: ${name}[${i}] must be ${what}${end}`,
+            );
+        }
+        use({ length: good.length, ...good });
+    }
+    refused(() => scene.set("velocity", BigInt64Array.of(1n, 2n, 3n)), "TypeError: velocity[0] must be...");
+    refused(() => new Scene({ position: new BigInt64Array(3) }), "TypeError: position[0] must be...");
+    scene.free();
+});
+
+await test("setLink() changes what it is given", () => {
+    const scene = rope({ editable: true });
+    const before = scene.getLinks();
+    scene.setLink(2, { rest: undefined, stiffness: undefined, damping: undefined });
+    assert.deepEqual(scene.getLinks(), before);
+    refused(
+        () => scene.setLink(2, { damping: null }),
+        "TypeError: links[2].damping must be a number, got null",
+    );
+    for (const changes of [null, 5, undefined])
+        refused(() => scene.setLink(2, changes), `TypeError: changes must be an object, got ${changes}`);
+    assert.deepEqual(scene.getLinks(), before);
+    scene.free();
+});
+
+await test("options that are not objects, and callbacks that are async, are refused", () => {
+    const scene = new Scene({ axes: 2, position: [0, 0, 1, 0], colliders: 1 });
+    const box = (more) => () => scene.setColliders([{ shape: "box", half: [1, 1], ...more }]);
+    const object = (name, value) => `TypeError: ${name} must be an object, got ${value}`;
+    for (const [run, wanted] of [
+        [() => scene.frame(1 / 60, 8), object("options", 8)],
+        [() => scene.frame(1 / 60, null), object("options", "null")],
+        [() => scene.frame(1 / 60, () => {}), "TypeError: options must be an object, got..."],
+        [() => scene.frame("leapfrog", 1e-3, 1 / 60, null), object("options", "null")],
+        [
+            () => scene.frame("leapfrog", 1e-3, 1 / 60, () => {}),
+            "TypeError: options must be an object, got...",
+        ],
+        [
+            () => scene.frame(1 / 60, { move: async () => {} }),
+            "TypeError: move must be synchronous, got [object Promise]",
+        ],
+        [
+            () => new Scene(grid({ count: [3], spacing: 1, stiffness: 1 })).frame(1, { method: "euler" }),
+            "TypeError: dt must be given, because the stable step of euler is 0, got undefined",
+        ],
+        [() => new Scene({ position: [0, 0, 0], links: [null] }), object("links[0]", "null")],
+        [() => new Scene({ position: [0, 0, 0], links: 3 }), object("links", 3)],
+        [() => new Scene({ position: [0, 0, 0], weightedLinks: 3 }), object("weightedLinks", 3)],
+        [() => bendGrid({ count: [3, 3], spacing: 1 }, 1, null), object("options", "null")],
+        [() => bendGrid(null, 1), object("grid", "null")],
+        [() => fromMesh(null), object("mesh", "null")],
+        [box({ spin: [0, 1] }), "RangeError: colliders[0].spin.length must be 3, got 2"],
+        [
+            box({ spinAcceleration: [0, 1] }),
+            "RangeError: colliders[0].spinAcceleration.length must be 3, got 2",
+        ],
+    ])
+        refused(run, wanted);
+    assert.equal(scene.time, 0);
+    scene.setColliders([{ shape: "plane", normal: { length: 2, 0: 0, 1: 1 } }]);
+    assert.deepEqual(scene.getColliders()[0].normal, [0, 1, 0]);
+    scene.free();
+});
+
+await test("a getter of an element may create a scene", () => {
+    const size = {
+        position: [1, 2, 3, 4, 5, 6],
+        velocity: [6, 5, 4, 3, 2, 1],
+        particleMask: [1, 2],
+        mass: [7, 8],
+    };
+    const links = [{ a: 0, b: 1, rest: 1, stiffness: 5 }];
+    const wanted = new Scene({ ...size, links }).save();
+    const others = [];
+    const watched = (object) =>
+        Object.defineProperties(
+            { length: object.length },
+            Object.fromEntries(
+                Object.entries(object).map(([i, value]) => {
+                    const get = () => {
+                        others.push(new Scene({ position: new Float64Array(3e5) })); // memory grows
+                        return value;
+                    };
+                    return [i, { get, enumerable: true }];
+                }),
+            ),
+        );
+    const evil = Object.fromEntries(Object.entries(size).map(([name, values]) => [name, watched(values)]));
+    const { length, ...link } = Object.getOwnPropertyDescriptors(watched(links[0]));
+    const scene = new Scene({ ...evil, links: [Object.defineProperties({}, link)] });
+    assert.ok(others.length > 0);
+    assert.deepEqual(scene.save(), wanted);
+    for (const each of others) each.free();
+});
+
 await test("scenes above 2 GiB of memory", () => {
     const program = `import { grid, Scene } from ${JSON.stringify(new URL("../scenes.js", import.meta.url))};
         import { library } from ${JSON.stringify(new URL("../module.js", import.meta.url))};

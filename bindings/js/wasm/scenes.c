@@ -223,17 +223,6 @@ EXPORT(scene_advance) spring_status scene_advance(shown *s, spring_method m, dou
     return status;
 }
 
-/* The impulses of a collider in the last call that advanced the scene. */
-EXPORT(scene_impulse) spring_status scene_impulse(const shown *s, spring_impulse *out, uint32_t collider)
-{
-    const spring_status status = spring_scene_impulses(s->scene, out, collider, 1);
-    for (int a = 0; a < 3 && status == SPRING_OK; a++) {
-        out->linear[a] += s->frames.earlier[collider].linear[a];
-        out->angular[a] += s->frames.earlier[collider].angular[a];
-    }
-    return status;
-}
-
 /* Positions have changed otherwise than by steps: frames do not interpolate across that. A frame that has begun replaces both
    states, or none if it fails. */
 EXPORT(scene_moved) const float *scene_moved(shown *s)
@@ -282,16 +271,6 @@ double scene_begin_frame(shown *s, double elapsed, double dt, double most, doubl
     return n;
 }
 
-static uint32_t places_of(const shown *s, double at[most_colliders][3])
-{
-    spring_collider c[most_colliders];
-    uint32_t count = most_colliders;
-    spring_scene_get_colliders(s->scene, c, &count);
-    for (uint32_t i = 0; i < count; i++)
-        memcpy(at[i], c[i].at, sizeof at[i]);
-    return count;
-}
-
 /* Takes the steps of a frame, n > 0. `before` stays as it is, because scene_undo_frame() may follow. */
 EXPORT(scene_take_frame) spring_status scene_take_frame(shown *s, spring_method m, double dt, double n)
 {
@@ -300,15 +279,19 @@ EXPORT(scene_take_frame) spring_status scene_take_frame(shown *s, spring_method 
         return status;
     spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
     spring_impulse *const j = s->frames.earlier;
-    double from[most_colliders][3], to[most_colliders][3];
-    const uint32_t count = places_of(s, from);
+    /* During the step, a callback may take frames of other scenes. The stack has 64 KiB. */
+    spring_collider from[most_colliders];
+    static spring_collider to[most_colliders];
+    uint32_t count = most_colliders;
+    spring_scene_get_colliders(s->scene, from, &count);
     spring_scene_impulses(s->scene, j, 0, count);
     status = spring_scene_advance(s->scene, m, dt, 1);
-    places_of(s, to);
+    spring_scene_get_colliders(s->scene, to, &count);
     for (uint32_t i = 0; i < count; i++)
         for (int a = 0; a < 3; a++) {
             const int b = (a + 1) % 3, c = (a + 2) % 3;
-            j[i].angular[a] += (from[i][b] - to[i][b]) * j[i].linear[c] - (from[i][c] - to[i][c]) * j[i].linear[b];
+            j[i].angular[a] +=
+                (from[i].at[b] - to[i].at[b]) * j[i].linear[c] - (from[i].at[c] - to[i].at[c]) * j[i].linear[b];
         }
     return status;
 }
