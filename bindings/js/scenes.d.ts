@@ -434,6 +434,6 @@ export declare class Scene {
     getColliders(): Collider[];
     /** For each particle the colliders that it touched in the last step: bit i stands for collider i. */
     touching(first?: number, count?: number): Uint32Array;
-    /** What particles gave to a collider in the last advance() or frame(). Of a frame without steps it is 0. */
+    /** What particles gave to a collider in the last advance() or frame(). It is 0 after a frame without steps. */
     impulse(collider: number): Impulse;
 }

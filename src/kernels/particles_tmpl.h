@@ -158,11 +158,16 @@ static bool move_drift_kick_drift(const scene_particles *p, const scene_motion *
     return for_each_vector(p, m, from, to, update_drift_kick_drift, 0, false);
 }
 
-/* The mass divided by its increase by drag in a time h, mass'. */
+/* mass'/mass of an exponential kick with drag; q = h drag/mass */
+SPRING_INLINE real mass_increase(real q)
+{
+    return 1 + q * ((scalar)0.5 + q / (12 + 2 * q));
+}
+
+/* mass/mass' in a time h. */
 SPRING_INLINE real mass_ratio(const coordinates *c, scalar h)
 {
-    const real q = h * c->drag;
-    return c->dragged ? 1 / (1 + q * ((scalar)0.5 + q / (12 + 2 * q))) : splat(1);
+    return c->dragged ? 1 / mass_increase(h * c->drag) : splat(1);
 }
 
 SPRING_INLINE lane_mask update_residual(const scene_motion *m, const coordinates *c, unsigned variant)

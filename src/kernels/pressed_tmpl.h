@@ -5,11 +5,12 @@
 #define SPRINGSTEP_PRESSED_TMPL_H
 
 #include "contact_rest_tmpl.h"
+#include "particles_tmpl.h"
 
 /* A vector of particles. Values of particles that are not pressed have no meaning. */
 typedef struct pressed_lanes {
     const pressed_kick *k;
-    size_t i;        /* the first particle */
+    size_t i, next;  /* the first particle of this vector, and the one after it */
     lane_mask where; /* pressed particles */
     real freedom;
     real3 line;
@@ -68,17 +69,19 @@ SPRING_CONTACT_INLINE lane_mask has_freedom(const pressed_lanes *l, freedom f)
     return l->freedom == splat((scalar)f);
 }
 
-/* Particles i, i + 1, ... Returns whether any of them is pressed. */
-SPRING_CONTACT_INLINE bool load_pressed(const pressed_kick *k, size_t i, pressed_lanes *l)
+/* Advances *l, which begins as {.k = k}, to the next vector with a pressed particle. Returns false if there is none. */
+SPRING_NOINLINE bool next_pressed(pressed_lanes *l)
 {
-    l->k = k;
-    l->i = i;
-    l->freedom = pressed_number(l, PRESSED_FREEDOM);
-    l->where = not_mask(has_freedom(l, NOT_PRESSED));
-    if (!any(l->where))
-        return false;
-    l->line = pressed_vector(l, PRESSED_LINE);
-    return true;
+    for (l->i = l->next; l->i < l->k->particles->count; l->i += lanes) {
+        l->freedom = pressed_number(l, PRESSED_FREEDOM);
+        l->where = not_mask(has_freedom(l, NOT_PRESSED));
+        if (any(l->where)) {
+            l->line = pressed_vector(l, PRESSED_LINE);
+            l->next = l->i + lanes;
+            return true;
+        }
+    }
+    return false;
 }
 
 /* The component of a vector in which the particle is free. */
@@ -118,10 +121,7 @@ static bool begin_friction(const pressed_kick *k)
 {
     const scene_particles *const p = k->particles;
     bool others = false;
-    for (size_t i = 0; i < p->count; i += lanes) {
-        pressed_lanes l;
-        if (!load_pressed(k, i, &l))
-            continue;
+    for (pressed_lanes l = {.k = k}; next_pressed(&l);) {
         const real3 full = of_particles(&l, k->residual), given = pressed_vector(&l, PRESSED_GIVEN);
         const real3 wanted = pressed_vector(&l, PRESSED_WANTED);
         const real square = dot3(wanted, wanted), coefficient = pressed_number(&l, PRESSED_COEFFICIENT);
@@ -130,9 +130,8 @@ static bool begin_friction(const pressed_kick *k)
         const lane_mask open = rough & not_mask(square <= rounding * rounding);
         lane_mask where = l.where & not_mask(open), holds = rough & where;
         if (k->damping != NULL) {
-            const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride);
-            const real q = k->h * p->drag * inverse_mass;
-            const real weight = inverse_mass / (1 + q * ((scalar)0.5 + q / (12 + 2 * q)));
+            const real inverse_mass = vec_load(p->inverse_mass + l.i * p->mass_stride);
+            const real weight = inverse_mass / mass_increase(k->h * p->drag * inverse_mass);
             const real load = -dot3(minus3(plus_scaled3(full, -weight, of_particles(&l, k->damping)), given), l.line);
             const real limit = coefficient * k->h * vec_not_negative(load);
             where = open;
@@ -155,13 +154,10 @@ static bool begin_friction(const pressed_kick *k)
    result b_0 by the same vector, apart from its damping forces, because 2 b_{k+1} - b_{k+2} continues a difference
    linearly. So PRESSED_REMOVED is the sum of these vectors until the last term, where it becomes the change of the
    velocity. */
-static bool project_pressed(const pressed_kick *k)
+static void project_pressed(const pressed_kick *k)
 {
     const bool last = k->from != NULL;
-    for (size_t i = 0; i < k->particles->count; i += lanes) {
-        pressed_lanes l;
-        if (!load_pressed(k, i, &l))
-            continue;
+    for (pressed_lanes l = {.k = k}; next_pressed(&l);) {
         const real3 term = of_particles(&l, k->term), from = last ? of_particles(&l, k->from) : zero_lanes();
         const real3 given = pressed_vector(&l, PRESSED_GIVEN), removed = pressed_vector(&l, PRESSED_REMOVED);
         const real3 change = minus3(term, from);
@@ -172,7 +168,6 @@ static bool project_pressed(const pressed_kick *k)
         put_pressed(&l, PRESSED_REMOVED, l.where, plus3(before, minus3(term, end)));
         put_of_particles(&l, k->term, l.where, end);
     }
-    return true;
 }
 
 /* After a kick, frees the particles that colliders have pulled, so that the kick can be repeated. Returns whether there
@@ -181,10 +176,7 @@ static bool project_pressed(const pressed_kick *k)
 static bool free_pulled(const pressed_kick *k)
 {
     bool found = false;
-    for (size_t i = 0; i < k->particles->count; i += lanes) {
-        pressed_lanes l;
-        if (!load_pressed(k, i, &l))
-            continue;
+    for (pressed_lanes l = {.k = k}; next_pressed(&l);) {
         const real outwards = dot3(pressed_vector(&l, PRESSED_OUTWARDS), pressed_vector(&l, PRESSED_REMOVED));
         const lane_mask pulled = l.where & not_mask(outwards <= 0);
         if (!any(pulled))
@@ -201,10 +193,7 @@ static bool free_pulled(const pressed_kick *k)
 static bool change_friction(const pressed_kick *k)
 {
     bool any_changed = false;
-    for (size_t i = 0; i < k->particles->count; i += lanes) {
-        pressed_lanes l;
-        if (!load_pressed(k, i, &l))
-            continue;
+    for (pressed_lanes l = {.k = k}; next_pressed(&l);) {
         const scalar tolerance = (scalar)friction_tolerance;
         const real coefficient = pressed_number(&l, PRESSED_COEFFICIENT);
         const lane_mask rough = l.where & (coefficient > 0);
@@ -249,12 +238,9 @@ static bool change_friction(const pressed_kick *k)
 
 /* Gives each particle back the load that its colliders took from its velocity, k->term, in the kick. The contacts that
    are computed next remove it again, with friction except for particles that slid in the kick. */
-static bool restore_loads(const pressed_kick *k)
+static void restore_loads(const pressed_kick *k)
 {
-    for (size_t i = 0; i < k->particles->count; i += lanes) {
-        pressed_lanes l;
-        if (!load_pressed(k, i, &l))
-            continue;
+    for (pressed_lanes l = {.k = k}; next_pressed(&l);) {
         const real3 outwards = pressed_vector(&l, PRESSED_OUTWARDS), removed = pressed_vector(&l, PRESSED_REMOVED);
         const real3 v = of_particles(&l, k->term);
         const real3 back = plus_scaled3(v, dot3(outwards, removed) / dot3(outwards, outwards), outwards);
@@ -262,9 +248,8 @@ static bool restore_loads(const pressed_kick *k)
             l.where & (pressed_number(&l, PRESSED_COEFFICIENT) > 0) & not_mask(has_freedom(&l, HELD));
         put_pressed(&l, PRESSED_REMOVED, l.where, plus3(removed, minus3(v, back)));
         put_of_particles(&l, k->term, l.where, back);
-        vec_store(k->friction + i, select_real(slid, splat(0), vec_load(k->friction + i)));
+        vec_store(k->friction + l.i, select_real(slid, splat(0), vec_load(k->friction + l.i)));
     }
-    return true;
 }
 
 #endif

@@ -288,7 +288,9 @@ typedef struct pressed_kick {
     scalar *friction; /* for restore_loads, written: factor of friction after the kick */
 } pressed_kick;
 
-typedef bool pressed_kernel(const pressed_kick *);
+/* The loops of scene/pressed.h over pressed particles, by pressed_tmpl.h. */
+typedef void pressed_kernel(const pressed_kick *);
+typedef bool pressed_test(const pressed_kick *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct common_kernels {
@@ -318,7 +320,11 @@ typedef struct common_kernels {
     keep_kernel *keep_motion;             /* see above */
     near_kernel *find_near;
     rest_kernel *stop_resting, *move_resting, *find_pressing;
-    pressed_kernel *press_hold, *press_project, *press_free, *press_slide, *press_restore;
+    pressed_test *press_hold;      /* holds particles, or lets them slide; whether some wait for the damping forces */
+    pressed_kernel *press_project; /* gives a term of the series the given acceleration */
+    pressed_test *press_free;      /* frees the particles that colliders have pulled; whether there are any */
+    pressed_test *press_slide;     /* changes friction that does not fit its limit; whether it has */
+    pressed_kernel *press_restore; /* gives loads back to the velocities */
 } common_kernels;
 
 /* All kernels of a vector width. Besides `common`, they are compiled for vectors of 64 bytes as well, because they gain

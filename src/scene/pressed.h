@@ -317,21 +317,10 @@ static inline bool find_pressed(scene_step *s, const scalar *x, scalar *residual
 /* Adds to collider k the impulse of particle i, whose velocity at x decreases by `removed`. */
 static inline void record_change(const scene_step *s, size_t i, unsigned k, const scalar *x, vector3 removed)
 {
-    const contact_setting *const t = &s->contacts.setting;
-    if (!t->records)
-        return;
-    const size_t stride = s->particles.stride;
     contact_particle particle;
+    const vector3 at = load_vector(x + i, s->particles.stride, s->particles.axes), zero = {0, 0, 0};
     scene_contact_particle(s->scene, i, &particle);
-    const double *const origin = t->origin[k], change[3] = {removed.x, removed.y, removed.z};
-    double arm[3] = {0};
-    for (uint32_t a = 0; a < s->particles.axes; a++)
-        arm[a] = (double)x[a * stride + i] - origin[a];
-    for (int a = 0; a < 3; a++) {
-        const int b = (a + 1) % 3, c = (a + 2) % 3;
-        t->impulse[k].linear[a] += particle.mass * change[a];
-        t->impulse[k].angular[a] += particle.mass * (arm[b] * change[c] - arm[c] * change[b]);
-    }
+    spring_contact_record(&s->contacts.setting, &particle, k, &at, &removed, &at, &zero);
 }
 
 /* Gives pressed particles back their loads in the velocities v1 after the kick, for the contacts that are computed next, and

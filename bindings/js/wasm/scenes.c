@@ -279,9 +279,8 @@ EXPORT(scene_take_frame) spring_status scene_take_frame(shown *s, spring_method 
         return status;
     spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
     spring_impulse *const j = s->frames.earlier;
-    /* During the step, a callback may take frames of other scenes. The stack has 64 KiB. */
-    spring_collider from[most_colliders];
-    static spring_collider to[most_colliders];
+    spring_collider from[most_colliders];      /* on the stack: a callback may take frames of other scenes */
+    static spring_collider to[most_colliders]; /* not on the stack, which has 64 KiB */
     uint32_t count = most_colliders;
     spring_scene_get_colliders(s->scene, from, &count);
     spring_scene_impulses(s->scene, j, 0, count);
