@@ -887,31 +887,31 @@ typedef struct turning_ball {
     int calls;
 } turning_ball;
 
-/* A call of the loop of docs/games.md. `other`: the acceleration of the ball by gravity */
-static void push_ball(spring_scene *s, turning_ball *b, const double other[3], double T, uint64_t steps)
+/* A call of the loop of docs/games.md. g: [m/s^2] the acceleration of the ball by gravity */
+static void push_ball(spring_scene *s, turning_ball *b, const double g[3], double T, uint64_t steps)
 {
     spring_collider c = {.shape = SPRING_SPHERE, .radius = b->radius, .friction = b->friction};
     spring_impulse j;
     double pushed[3], correction[3];
     memcpy(c.at, b->at, sizeof c.at);
     memcpy(c.velocity, b->v, sizeof c.velocity);
-    memcpy(c.acceleration, b->calls > 0 ? b->accel : other, sizeof c.acceleration);
+    memcpy(c.acceleration, b->calls > 0 ? b->accel : g, sizeof c.acceleration);
     memcpy(c.spin, b->spin, sizeof c.spin);
     memcpy(c.spin_acceleration, b->spin_accel, sizeof c.spin_acceleration);
     set(s, &c, 1);
     run(s, SPRING_LEAPFROG, T / (double)steps, steps);
     spring_scene_impulses(s, &j, 0, 1);
     for (int a = 0; a < 3; a++)
-        pushed[a] = c.acceleration[a] - other[a];
+        pushed[a] = c.acceleration[a] - g[a];
     cross(b->v, pushed, correction);
     for (int a = 0; a < 3; a++) {
         const double linear = j.linear[a], angular = j.angular[a] + b->mass * T * T / 2 * correction[a];
-        const double of[2] = {b->calls > 0 ? b->before[0][a] : linear, b->calls > 0 ? b->before[1][a] : angular};
+        const double last[2] = {b->calls > 0 ? b->before[0][a] : linear, b->calls > 0 ? b->before[1][a] : angular};
         b->at[a] += T * b->v[a] + T * T / 2 * c.acceleration[a];
-        b->v[a] += linear / b->mass + other[a] * T;
+        b->v[a] += linear / b->mass + g[a] * T;
         b->spin[a] += angular / b->inertia;
-        b->accel[a] = other[a] + (3 * linear - of[0]) / (2 * T * b->mass);
-        b->spin_accel[a] = (3 * angular - of[1]) / (2 * T * b->inertia);
+        b->accel[a] = g[a] + (3 * linear - last[0]) / (2 * T * b->mass);
+        b->spin_accel[a] = (3 * angular - last[1]) / (2 * T * b->inertia);
         b->before[0][a] = linear;
         b->before[1][a] = angular;
     }
