@@ -2,9 +2,6 @@
 /* The rules of colliders: valid colliders, touching and rest. test_random.c tests bits, calls and rollback. */
 #include "test_contact.h"
 
-static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
-enum { method_count = 3 };
-
 static size_t count_touching(const spring_scene *s, size_t particles)
 {
     uint32_t mask[most];
@@ -36,7 +33,7 @@ static void neighbours_change_nothing(void)
                 spring_scene_def def = falling(all ? count : 1, x[0], v[0], 2);
                 def.gravity[1] = 0, def.colliders = 2;
                 spring_scene *s = scene_with(&def, c);
-                CHECK(spring_scene_advance_with(kernels_of(k), s, with_contacts[m], 0.01, 1) == SPRING_OK, "valid");
+                CHECK(spring_scene_advance_with(kernels_of(k), s, contact_methods[m], 0.01, 1) == SPRING_OK, "valid");
                 get(s, end[all], end[all] + 3);
                 free(s);
             }
@@ -68,7 +65,7 @@ static void others_change_nothing(void)
                 c[i].surface[a] = i == 0 ? c[i].surface[a] : 0;
             }
         }
-        const spring_method method = with_contacts[random_bits() % method_count];
+        const spring_method method = contact_methods[random_bits() % method_count];
         spring_scene_def def = {.axes = axes, .position = x, .velocity = v, .gravity = {0, -9.81, 0}};
         def.colliders = collider_count, def.particle_radius = random_uniform(0, 0.1), def.methods = 1u << method;
         const spring_link link = {0, 1, random_uniform(0, 1), random_log(0.1, 100), random_log(1, 1e4) / dt, 0};
@@ -106,13 +103,13 @@ static void change_collider(spring_collider *c, view w)
     enum { no_axis = 3 };
     c->radius = seen(w, c->radius, 1, 0, no_axis);
     for (int a = 0; a < 3; a++) {
-        const int frame = c->shape == SPRING_BOX ? no_axis : a; /* the axes of a box are mirrored as well */
+        const int of_surface = c->shape == SPRING_BOX ? no_axis : a; /* the axes of a box are mirrored as well */
         c->at[a] = seen(w, c->at[a], 1, 0, a);
         c->to[a] = seen(w, c->to[a], 1, 0, a);
         c->half[a] = seen(w, c->half[a], 1, 0, no_axis);
         c->velocity[a] = seen(w, c->velocity[a], 1, -1, a);
         c->velocity_to[a] = seen(w, c->velocity_to[a], 1, -1, a);
-        c->surface[a] = seen(w, c->surface[a], 1, -1, frame);
+        c->surface[a] = seen(w, c->surface[a], 1, -1, of_surface);
         c->acceleration[a] = seen(w, c->acceleration[a], 1, -2, a);
         const int turns = w.mirrored < 0 || a == w.mirrored ? 1 : -1; /* axial vectors */
         c->spin[a] = turns * seen(w, c->spin[a], 0, -1, no_axis);
@@ -174,7 +171,7 @@ static void units_and_mirrors(void)
             w.mirrored = -1;
         }
         const double dt = random_log(0.005, 0.05), heavy = random_bits() % 3 == 0 ? random_log(1, 1e3) : 1;
-        const spring_method method = with_contacts[random_bits() % method_count];
+        const spring_method method = contact_methods[random_bits() % method_count];
         spring_collider c[bodies];
         build(&m, (uint32_t[]){4, 3, axes - 1}, axes, (unsigned)(random_bits() % feature_masks));
         for (int i = 0; i < bodies; i++)
@@ -211,7 +208,7 @@ static void speed_limit(void)
 {
     const double x[] = {1, 0.001, 0}, v[] = {0, -5, 0};
     for (int m = 0; m < method_count; m++) {
-        const spring_method method = with_contacts[m];
+        const spring_method method = contact_methods[m];
         spring_scene_def def = falling(1, x, v, 1);
         def.max_speed = 6, def.gravity[1] = -2000;
         spring_collider floor_below = ground;
@@ -545,7 +542,7 @@ static void time_of_a_wall(void)
     const spring_collider c = {
         .shape = SPRING_PLANE, .at = {1, 0, 0}, .axis = {{1, 0, 0}}, .velocity = {1, 0, 0}, .friction = 1};
     for (int m = 0; m < method_count; m++) {
-        const spring_method method = with_contacts[m];
+        const spring_method method = contact_methods[m];
         spring_scene *s = scene_of(&def), *other = scene_of(&def);
         CHECK(spring_scene_set_time(s, 1e6) == SPRING_OK && spring_scene_set_colliders(s, &c, 1) == SPRING_OK, "valid");
         double dt = 1.0 / 64, elapsed = 0;
@@ -586,7 +583,7 @@ static void inside_at_first(void)
             c.shape = (spring_shape)shape;
             c.radius = c.to[2] = 1;
             spring_scene *s = scene_with(&def, &c);
-            run(s, with_contacts[m], 0.01, 1);
+            run(s, contact_methods[m], 0.01, 1);
             double now[6], v[3];
             spring_scene_get(s, SPRING_POSITION, now, 0, 0, 2);
             spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
@@ -598,7 +595,7 @@ static void inside_at_first(void)
             const double inwards[] = {-0.1, -0.2, -0.05};
             spring_scene_set(s, SPRING_POSITION, x, 0, 0, 1);
             spring_scene_set(s, SPRING_VELOCITY, inwards, 0, 0, 1);
-            run(s, with_contacts[m], 0.01, 1);
+            run(s, contact_methods[m], 0.01, 1);
             spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
             CHECK_BELOW(length(v), 0.25, "at most the speed that it had");
             CHECK(now[3] == (double)(scalar)x[3] && now[4] == (double)(scalar)x[4], "a pinned particle passes through");

@@ -10,6 +10,7 @@
 enum { in_double = sizeof(scalar) == sizeof(double) };
 
 static const double gravity = 9.81;
+static const double frame = 1. / 60;                        /* [s] */
 static const double none[3] = {0}, down[3] = {0, -9.81, 0}; /* [m/s^2] no gravity, and gravity along y */
 
 static const spring_collider ground = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
@@ -92,6 +93,24 @@ SPRING_INLINE double gap_of(const spring_collider *c, double time, const double 
     for (int a = 0; a < 3 && c->shape == SPRING_CAPSULE; a++)
         arm[a] -= along * segment[a];
     return length(arm) - c->radius;
+}
+
+static const spring_method contact_methods[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
+enum { method_count = 3, second_order = 2 }; /* the first two */
+
+/* A custom body: the half-spaces below planes through the origin, with a contact for each. */
+typedef struct faces {
+    uint32_t count;
+    double normal[3][3];
+} faces;
+
+SPRING_INLINE uint32_t gaps_of_faces(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    const faces *f = user;
+    memcpy(normal, f->normal, sizeof f->normal);
+    for (uint32_t k = 0; k < f->count; k++)
+        gap[k] = dot(f->normal[k], y);
+    return f->count;
 }
 
 /* Free particles that fall on a collider. */

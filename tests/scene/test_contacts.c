@@ -4,9 +4,6 @@
 #include "contact/closed_forms.h"
 #include "test_contact.h"
 
-static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
-enum { method_count = 3, second_order = 2 }; /* the first two */
-
 /* One particle. With fillers, pinned and far away, the scene has the layout of many particles. */
 enum { fillers = 20 };
 
@@ -167,7 +164,7 @@ static void spring_on_plane(void)
                      .collider = {ground}};
         w.collider[0].restitution = i == 0 ? 1 : 0.8;
         for (int m = 0; m < second_order; m++)
-            CHECK(!in_double || slope(spring_on_plane_error, &w, with_contacts[m]) >= 1.8,
+            CHECK(!in_double || slope(spring_on_plane_error, &w, contact_methods[m]) >= 1.8,
                   "second order across impacts");
         CHECK_CLOSE(slope(spring_on_plane_error, &w, SPRING_SYMPLECTIC_EULER), 1, 0.1, "first order");
     }
@@ -188,9 +185,9 @@ static void oblique_bounces(void)
     w.collider[0].restitution = 0.7;
     w.collider[0].friction = 0.1;
     for (int m = 0; m < second_order; m++) {
-        CHECK_BELOW(oblique_error(&w, with_contacts[m], 1.0 / 240), in_double ? 1e-5 : 1e-3,
+        CHECK_BELOW(oblique_error(&w, contact_methods[m], 1.0 / 240), in_double ? 1e-5 : 1e-3,
                     "twice the prototype's error");
-        CHECK(!in_double || slope(oblique_error, &w, with_contacts[m]) >= 1.8, "second order");
+        CHECK(!in_double || slope(oblique_error, &w, contact_methods[m]) >= 1.8, "second order");
     }
 }
 
@@ -216,8 +213,8 @@ static void slide_over_sphere(void)
                                .colliders = 1,
                                .collider = {{.shape = SPRING_SPHERE, .radius = 1, .friction = mu}}};
             for (int m = 0; m < second_order && in_double; m++) {
-                CHECK_BELOW(slide_error(&w, with_contacts[m], 1.0 / 240), 5e-5, "twice the prototype's error");
-                CHECK(slope(slide_error, &w, with_contacts[m]) >= 1.8, "second order, also where it leaves");
+                CHECK_BELOW(slide_error(&w, contact_methods[m], 1.0 / 240), 5e-5, "twice the prototype's error");
+                CHECK(slope(slide_error, &w, contact_methods[m]) >= 1.8, "second order, also where it leaves");
             }
             CHECK_BELOW(slide_error(&w, SPRING_LEAPFROG, 1.0 / 240), in_double ? 5e-5 : 5e-3,
                         "in float by rounding errors");
@@ -244,9 +241,9 @@ static void moving_wall(void)
             spring_scene *s = scene_for(&w);
             double x[3], v[3];
             set(s, NULL, 0);
-            run(s, with_contacts[m], 0.01, 25);
+            run(s, contact_methods[m], 0.01, 25);
             set(s, w.collider, 1);
-            end_of(s, with_contacts[m], 0.01, 10, x, v);
+            end_of(s, contact_methods[m], 0.01, 10, x, v);
             const double hit = 0.1 / speed, after = 0.1 - hit;
             CHECK_CLOSE(v[0], (1 + e) * speed, 10 * EPS, "thrown ahead of it");
             CHECK_CLOSE(v[1], mu * (1 + e) * speed, 10 * EPS, "friction");
@@ -271,7 +268,7 @@ static void incline(void)
                                  .collider = {{.shape = SPRING_PLANE, .friction = mu}}};
                     memcpy(w.collider[0].axis[0], n, sizeof n);
                     double x[3], v[3];
-                    run_to(&w, with_contacts[m], dt, 2, x, v);
+                    run_to(&w, contact_methods[m], dt, 2, x, v);
                     const double slid = length(x), a = gravity * (sin(angle) - mu * cos(angle));
                     if (slides) /* symplectic Euler: positions of half a step later */
                         CHECK_CLOSE(slid / (a * 2 * (m < second_order ? 1 : 1 + dt / 2)), 1, in_double ? 1e-12 : 2e-4,
@@ -296,9 +293,9 @@ static void incline_far_away(void)
             memcpy(w.collider[0].at, w.x, sizeof w.x);
             double x[3], v[3], first[3];
             spring_scene *s = scene_for(&w);
-            step_once(s, with_contacts[m], 1.0 / 240, first, v);
+            step_once(s, contact_methods[m], 1.0 / 240, first, v);
             for (int step = 0; step < 480; step++)
-                step_once(s, with_contacts[m], 1.0 / 240, x, v);
+                step_once(s, contact_methods[m], 1.0 / 240, x, v);
             CHECK(memcmp(x, first, sizeof x) == 0 && v[0] == 0 && v[1] == 0 && v[2] == 0, "held, to the bit");
             free(s);
         }
@@ -385,7 +382,7 @@ static void never_inside(void)
         spring_scene *s = scene_with(&m.def, &c);
         const double bound = 32 * EPS * (10 + c.radius); /* four times the slop, at most 10 m from the origin */
         for (int step = 0; step < 20; step++) {
-            run(s, with_contacts[number % method_count], 0.01, 1);
+            run(s, contact_methods[number % method_count], 0.01, 1);
             CHECK_BELOW(fmax(0, -least_gap(s, &c, 1, m.def.particle_radius, spring_scene_time(s))), bound, "outside");
         }
         free(s);
@@ -414,7 +411,7 @@ static void hits_and_misses(void)
         spring_scene_def def = falling(count, x, v, 1);
         def.axes = axes, def.gravity[1] = 0, def.particle_radius = (scalar)radius;
         spring_scene *s = scene_with(&def, &c);
-        run(s, with_contacts[number % method_count], dt, 1);
+        run(s, contact_methods[number % method_count], dt, 1);
         uint32_t mask[count];
         spring_scene_touching(s, mask, 0, count);
         for (size_t i = 0; i < count; i++) {
