@@ -34,6 +34,11 @@ static inline scalar *pressed_component(const scene_step *s, pressed_value name,
     return (scalar *)scene_memory(s->scene, ARRAY_PRESSED) + (name + a) * s->particles.stride + i;
 }
 
+static inline freedom freedom_of(const scene_step *s, size_t i)
+{
+    return (freedom)*pressed_component(s, PRESSED_FREEDOM, i, 0);
+}
+
 /* --------------------------------------------------------------------------------------------------------- detection */
 
 /* How one surface presses a particle. */
@@ -139,7 +144,7 @@ static inline void add_normal(const scene_step *s, size_t i, const pressing *by)
 {
     const scalar parallel = (scalar)1e-3; /* sine */
     const scalar *const normal = by->normal;
-    scalar *const freedom_of = pressed_component(s, PRESSED_FREEDOM, i, 0);
+    const freedom before = freedom_of(s, i);
     scalar *line[3], free[3], wanted[3], slip[3], along = 0, change = wanted_change(s, i, by, wanted, slip);
     for (uint32_t a = 0; a < 3; a++) {
         line[a] = pressed_component(s, PRESSED_LINE, i, a);
@@ -147,9 +152,7 @@ static inline void add_normal(const scene_step *s, size_t i, const pressing *by)
         *pressed_component(s, PRESSED_OUTWARDS, i, a) += normal[a];
     }
     for (int a = 0; a < 3; a++)
-        free[a] = *freedom_of == HELD              ? 0
-                  : *freedom_of == FREE_ALONG_LINE ? along * *line[a]
-                                                   : normal[a] - along * *line[a];
+        free[a] = before == HELD ? 0 : before == FREE_ALONG_LINE ? along * *line[a] : normal[a] - along * *line[a];
     const double size = spring_sqrt((double)(free[0] * free[0] + free[1] * free[1] + free[2] * free[2]));
     if (size < (double)parallel)
         return;
@@ -157,14 +160,13 @@ static inline void add_normal(const scene_step *s, size_t i, const pressing *by)
         change -= s->h * *pressed_component(s, PRESSED_GIVEN, i, a) * normal[a];
     for (uint32_t a = 0; a < 3; a++)
         *pressed_component(s, PRESSED_GIVEN, i, a) += change / (s->h * (scalar)(size * size)) * free[a];
-    if (*freedom_of == FREE_ALONG_LINE || s->particles.axes == 2) {
-        *freedom_of = HELD;
+    const bool held = before == FREE_ALONG_LINE || s->particles.axes == 2;
+    *pressed_component(s, PRESSED_FREEDOM, i, 0) = held ? HELD : FREE_ALONG_LINE;
+    if (held)
         return;
-    }
     const scalar n[3] = {*line[0], *line[1], *line[2]};
     for (int a = 0; a < 3; a++)
         *line[a] = (n[(a + 1) % 3] * free[(a + 2) % 3] - n[(a + 2) % 3] * free[(a + 1) % 3]) / (scalar)size;
-    *freedom_of = FREE_ALONG_LINE;
 }
 
 /* The surfaces of the colliders with these bits that particle i touches at x. Returns their number. */
@@ -335,7 +337,7 @@ static inline void end_pressed(scene_step *s, pressed_kick *kick, const scalar *
     s->contacts.friction = kick->friction;
     s->kernels->common->press_restore(kick);
     for (size_t i = 0; i < s->particles.count && s->contacts.setting.records; i++)
-        if (*pressed_component(s, PRESSED_FREEDOM, i, 0) != NOT_PRESSED)
+        if (freedom_of(s, i) != NOT_PRESSED)
             record_change(s, i, (unsigned)*pressed_component(s, PRESSED_COLLIDER, i, 0), x,
                           load_vector(pressed_component(s, PRESSED_REMOVED, i, 0), s->particles.stride, 3));
 }
