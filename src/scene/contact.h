@@ -119,6 +119,10 @@ SPRING_INTERNAL double spring_contact_skin(const spring_collider *c, unsigned co
 /* [m] An upper bound on the displacements of the points of the core in the step; of a turning plane it is infinite. */
 SPRING_INTERNAL double spring_contact_motion(const contact_body *b);
 
+/* [m] The size of numbers that its distances are computed from, with this rounding error. The function of a custom body
+   computes in double, so its thickness counts less in single precision. */
+SPRING_INTERNAL double spring_contact_rounding_scale(const contact_body *b, const body_pose *pose, double epsilon);
+
 /* Moves a particle: changes w and d by its contacts. */
 SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_particle *p);
 
