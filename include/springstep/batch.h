@@ -72,7 +72,8 @@ typedef struct spring_batchf {
  * computed once, and a spring costs six multiplications and two additions. Otherwise each spring has its own
  * coefficients, also computed with SIMD. In single precision, shared coefficients are computed in double and rounded
  * once, while a spring with its own coefficients is advanced in double and rounded at the end. In no other case does
- * sharing change a result. Here it changes it by rounding errors of the state.
+ * sharing change a result. Here it changes it by rounding errors of the state, as long as the coefficients are in the
+ * range of float. The coefficient of accel is about t^2/2 in short steps, so t must be above 1.6e-19 s.
  *
  * The state of a damped spring decays to denormal numbers, below about 1e-308 (1e-38 in float), which are slow on many
  * processors. They are not set to zero, because this would change the results. Leave settled springs out of the batch,
@@ -164,7 +165,7 @@ SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const floa
  *
  * Spring i is advanced like a single spring by spring_follow(), where T[i] is target[i] at the end of the step and T[i]'
  * is target_velocity[i]. In double precision the result is bit-identical. After the step, a spring within x_tol of its
- * rest position whose velocity differs from that of its target by at most v_tol is placed at its rest position with the
+ * rest position whose velocity relative to its target is at most v_tol is placed at its rest position with the
  * velocity of its target. It counts as moving while that velocity is not 0.
  *
  * The motion relative to the targets is advanced with SIMD. The rest is done one spring at a time.

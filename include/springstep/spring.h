@@ -190,15 +190,19 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
- * @param[in]     dt  time step t [s] of any size, if omega t and gamma t do not overflow; a negative step integrates
- *                    backwards
+ * @param[in]     dt  time step t [s] of any size, if omega t, gamma t and, backwards, e^(gamma |t|/2) do not overflow; a
+ *                    negative step integrates backwards
  * @par Accuracy  Without load, the error of (x, v/omega) is at most
  *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
  *                where zeta is the damping ratio, Phi is the propagator of (x, v/omega), and all norms are Euclidean.
- *                The bound also holds at critical damping. A load adds a term to x. For dt > 0, the error of this term is
- *                at most 8 eps (1 + omega dt) times the term, or times accel/omega2 for an oscillating spring. For
- *                dt < 0, it is at most 8 eps (1 + 2 zeta omega |dt|) times the term if zeta > 1, and otherwise
- *                8 eps (1 + omega |dt|) times the larger of the term and e^(zeta omega |dt|) accel/omega2
+ *                The bound also holds at critical damping. Without stiffness, the error of v is at most
+ *                4 eps (1 + gamma |dt|) |v| + DBL_MIN. If v is not 0, that of x is at most 4 eps (1 + gamma |dt|) times
+ *                (|x| + displacement in the step) + DBL_MIN; otherwise x does not change. A load adds a term P accel to
+ *                x. If P [s^2] is in the range of normal numbers, the error of this term is at most
+ *                    8 eps (1 + omega dt) times the term                 if dt > 0 and zeta >= 1
+ *                    8 eps (1 + omega dt) times accel/omega2             if dt > 0 and zeta < 1
+ *                    8 eps (1 + 2 zeta omega |dt|) times the term        if dt < 0 and zeta > 1
+ *                    8 eps (1 + omega |dt|) times the larger of the term and e^(zeta omega |dt|) accel/omega2  otherwise
  *                (tests/spring/test_exact.c).
  * @par Source    src/spring/exact_formula_tmpl.h derives the formula
  * @par Threads   re-entrant; allocates nothing and keeps no state
@@ -230,7 +234,8 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
                                         uint64_t n);
 
 /**
- * Advances one spring that follows a target, by its exact solution. The step may be of any length.
+ * Advances one spring that follows a target, by its exact solution. The step may be of any length for which
+ * spring_step_exact() does not overflow.
  *
  *     mass x'' = load - stiffness (x - T) - damping (x' - T')
  *
@@ -263,7 +268,8 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *                    2 eps max(1, |Phi|) (|rest position| + |load/stiffness| + |T' dt| + |T'|/omega)
  *                    9/8 ulp/max(min(1, slow dt), 2^-16), if the spring is placed on its target
  *                where the first line is the bound of spring_step_exact() (tests/spring/test_follow.c). Without stiffness,
- *                the error is at most the bound of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
+ *                the errors of x and v are at most those of spring_step_exact() for (x, u), plus
+ *                2 eps (|x| + |T' dt| + |T'|).
  *                For dt > 0 errors do not grow. Steps of any lengths therefore agree with one step over the same time
  *                to within the sum of their bounds.
  * @par Source    src/spring/follow_formula_tmpl.h derives the condition
@@ -310,8 +316,9 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  * @return time step [s]. 0: there is none, because the rounding error of n steps, sqrt(n) eps, exceeds the tolerance,
  *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered
  *         for one spring.
- * @par Accuracy  the error of a run from the worst start is at most 1.001 times the tolerance and, with 100 steps or
- *                more, above 0.9 times the tolerance (tests/spring/test_accurate_step.c)
+ * @par Accuracy  the error of a run from the worst start is at most 1.001 times the tolerance. With 100 steps or more and
+ *                a tolerance of at most 1, it is above 0.9 times the tolerance (tests/spring/test_accurate_step.c). A
+ *                call takes much longer than a step, so call it when parameters change, not in every frame.
  * @par Source    src/spring/accuracy.c derives the error
  */
 SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance);
@@ -378,8 +385,8 @@ SPRING_API spring_params spring_params_bounce(double duration, double bounce);
  * @param[in] damping_ratio  > 0; 1 is critical
  * @param[in] tolerance      0 < tolerance < 1, relative to the initial distance; 0.001 looks settled
  * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
- * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c), unless the
- *                tolerance is the amplitude of a turning point to within rounding errors
+ * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c) if the damping ratio
+ *                is at least 1e-9, unless the tolerance is the amplitude of a turning point to within rounding errors
  */
 SPRING_API spring_params spring_params_settling(double time, double damping_ratio, double tolerance);
 
@@ -416,7 +423,7 @@ SPRING_API double spring_settling_time(const spring_state *s, const spring_param
  *
  * @param[in] x_tol  >= 0 [m]
  * @param[in] v_tol  >= 0 [m/s]
- * @return time [s]; INFINITY if the spring never rests; NaN for invalid input
+ * @return time [s]; INFINITY if the spring never rests, or if its acceleration overflows; NaN for invalid input
  * @par Accuracy  as spring_settling_time(), for x and for v
  */
 SPRING_API double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol, double v_tol);

@@ -446,7 +446,8 @@ spring_status spring_batch_follow_moving(const spring_batch *b, const scalar *ta
 
 double spring_batch_stable_step(const spring_batch *b, spring_method m)
 {
-    if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
+    const spring_method_info *const info = spring_method_describe(m);
+    if (b == NULL || !batch_valid(b) || info == NULL || !info->springs)
         return (double)NAN;
     const bool all_shared = is_shared(b, SPRING_SHARED_OMEGA2) &&
                             (b->gamma == NULL || is_shared(b, SPRING_SHARED_GAMMA)) &&

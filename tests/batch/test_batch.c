@@ -571,6 +571,7 @@ static void stable_step(void)
 {
     static place p;
     const spring_batch empty = {0}, empty_shared = {.omega2 = &step, .shared = SPRING_SHARED_OMEGA2};
+    CHECK(isnan(spring_batch_stable_step(&empty, SPRING_RKN8)), "not for springs");
     for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         const spring_method method = *m;
         CHECK_BITS(spring_batch_stable_step(&empty, method), INFINITY, "no springs");

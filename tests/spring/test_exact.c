@@ -208,6 +208,38 @@ static void stays_at_rest_under_load(void)
     }
 }
 
+/* Damping alone, also backwards, where e^(-gamma t) overflows: x + (1 - e^(-gamma t))/gamma v and e^(-gamma t) v. */
+static void without_stiffness(void)
+{
+    mpfr_t gamma, decay, way;
+    mpfr_inits2(200, gamma, decay, way, (mpfr_ptr)NULL);
+    for (int i = 0; i < 20000; i++) {
+        const double mass = random_log(1e-3, 1e3), damping = random_log(1e-6, 1e6);
+        const double t = (i % 2 ? 1 : -1) * random_log(1e-9, 1400) * mass / damping;
+        const spring_params p = {mass, 0, damping, 0};
+        const spring_state start = {random_uniform(-1e3, 1e3), i % 5 ? random_log(1e-3, 1e3) : 0};
+        spring_state got = start;
+        spring_step_exact(&got, &p, t);
+        mpfr_set_d(gamma, damping, MPFR_RNDN);
+        mpfr_div_d(gamma, gamma, mass, MPFR_RNDN);
+        mpfr_mul_d(decay, gamma, -t, MPFR_RNDN);
+        mpfr_expm1(way, decay, MPFR_RNDN);
+        mpfr_exp(decay, decay, MPFR_RNDN);
+        mpfr_mul_d(decay, decay, start.v, MPFR_RNDN);
+        mpfr_mul_d(way, way, -start.v, MPFR_RNDN);
+        mpfr_div(way, way, gamma, MPFR_RNDN);
+        const double v = mpfr_get_d(decay, MPFR_RNDN), d = mpfr_get_d(way, MPFR_RNDN);
+        const double share = 4 * DBL_EPSILON * (1 + damping / mass * fabs(t));
+        if (!isfinite(start.x + d) || !isfinite(v)) {
+            CHECK(!isfinite(got.x) || !isfinite(got.v), "the solution overflows");
+            continue;
+        }
+        CHECK_CLOSE(got.x, start.x + d, start.v != 0 ? share * (fabs(start.x) + fabs(d)) + DBL_MIN : 0, "stated bound");
+        CHECK_CLOSE(got.v, v, share * fabs(v) + DBL_MIN, "stated bound");
+    }
+    mpfr_clears(gamma, decay, way, (mpfr_ptr)NULL);
+}
+
 /* cos and sin by their series, as far as t = 1 reaches into them: the last terms are a few eps. */
 static void series_to_the_last_term(void)
 {
@@ -259,6 +291,7 @@ int main(int argc, char **argv)
         {"response to a load", loaded},
         {"where the formula changes", where_it_changes},
         {"at rest under load", stays_at_rest_under_load},
+        {"without stiffness", without_stiffness},
         {"series to the last term", series_to_the_last_term},
         {"special springs", special_springs},
     };
