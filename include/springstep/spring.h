@@ -190,8 +190,8 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
- * @param[in]     dt  time step t [s] of any size, if omega t, gamma t and, backwards, e^(gamma |t|/2) do not overflow; a
- *                    negative step integrates backwards
+ * @param[in]     dt  time step t [s] of any size, if omega t and gamma t do not overflow; a negative step integrates
+ *                    backwards, if also e^(gamma |t|/2) and e^(gamma |t|/2)/gamma do not overflow
  * @par Accuracy  Without load, the error of (x, v/omega) is at most
  *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
  *                where zeta is the damping ratio, Phi is the propagator of (x, v/omega), and all norms are Euclidean.
