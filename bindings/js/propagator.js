@@ -110,7 +110,7 @@ export class Propagator {
         const power = powerOfTwo(most);
         const other = power + power * e;
         this.half = powerOfTwo(k - most);
-        this.F = other * F;
+        this.F = omega2 > 0 ? other * F : 1 / this.half; // without stiffness half F is 1
         this.G = other * G;
         this.H = other * H;
         const decay = rate * dt;
