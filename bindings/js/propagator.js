@@ -75,7 +75,7 @@ export class Propagator {
 
     /** Where a value ends: without stiffness where damping stops it, or where it is if nothing does. */
     restPlace(x, v, target) {
-        const place = this.omega2 > 0 ? target : x + v / this.b / 2;
+        const place = this.omega2 ? target : x + v / this.b / 2;
         return abs(place) < Infinity ? place : x;
     }
 
@@ -110,11 +110,11 @@ export class Propagator {
         const power = powerOfTwo(most);
         const other = power + power * e;
         this.half = powerOfTwo(k - most);
-        this.F = omega2 > 0 ? other * F : 1 / this.half; // without stiffness half F is 1
+        this.F = omega2 ? other * F : 1 / this.half; // without stiffness half F is 1
         this.G = other * G;
         this.H = other * H;
         const decay = rate * dt;
-        this.fraction = omega2 > 0 && decay > 0 ? min(max(decay, leastFraction), 1) : 0;
+        this.fraction = omega2 && decay > 0 ? min(max(decay, leastFraction), 1) : 0;
         this.angle = this.overdamped ? 0 : size; // [rad] by which the oscillation advances
     }
 }

@@ -152,7 +152,7 @@ export class Spring {
         const speed = this.#targetVelocity;
         if (this.#value === target && this.#velocity === 0 && speed === 0) return this.#place(target);
         const { p, tolerances } = this.#settings;
-        const attracts = p.omega2 > 0; // without stiffness, only the velocity of a target has an effect
+        const attracts = p.omega2; // without stiffness, only the velocity of a target has an effect
         const moved = speed && speed * dt;
         const to = attracts ? target : moved;
         const y0 = this.#value - (attracts ? target - moved : 0);
