@@ -332,14 +332,14 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * e^-z)/z by a Chebyshev series. A correction for the rotation of links during the step is included. Leapfrog is
  * therefore stable for dt < 2/sqrt(L) at any link damping, and a link that creeps does so at the rate
  * stiffness/damping. The kick adds no energy, with two exceptions: where damped links turn during the step, and with
- * friction, for dt G > 1000. In an impact of links that turn by 0.1 rad in the step, the gain may be a large part of
- * the kinetic energy; it decreases fast with the step. The step has order 2 for dt G up to about 3. Beyond, the order
- * falls to 1 (tests/scene/test_damping.c). A step evaluates forces once, and damping alone once for dt G <= 0.6, and
- * about 1.6 sqrt(dt G) times beyond. If links are overdamped, the error just below dt G = 0.6 is two to three times as
- * large as just above, where a second evaluation is added. Positions, velocities and time are then the whole state: no
- * force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice, with v0 and with
- * (v0 + v1)/2, where v1 follows from the first call. The series is then computed twice. A negative dt always uses
- * explicit damping.
+ * friction, for dt G > 1000, or with very different masses for dt G > 100. In an impact of links that turn by 0.1 rad
+ * in the step, the gain may be a large part of the kinetic energy; it decreases fast with the step. The step has order
+ * 2 for dt G up to about 3. Beyond, the order falls to 1 (tests/scene/test_damping.c). A step evaluates forces once,
+ * and damping alone once for dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond. If links are overdamped, the error
+ * just below dt G = 0.6 is two to three times as large as just above, where a second evaluation is added. Positions,
+ * velocities and time are then the whole state: no force is kept. Callbacks are called at t + dt/2. A callback that may
+ * use velocities is called twice, with v0 and with (v0 + v1)/2, where v1 follows from the first call. The series is
+ * then computed twice. A negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and a kick makes at most 279 evaluations of damping: the
  * damping of a link is multiplied by the smaller factor of its two ends. The factor of a particle is 30000/(dt G),
