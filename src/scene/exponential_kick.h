@@ -54,35 +54,38 @@
 
 /* Reduces the velocities with which particles leave colliders with restitution, by at most the impulse of the impact. The
    kick before this impact has not damped them, and the next would be too late: a body would bounce in every step, and gain
-   elastic energy. Friction that exceeds the limit of the smaller impulse is given back. before: velocities before the
+   elastic energy. Friction that exceeds the limit of the smaller impulse is given back, unless the particle touches
+   several surfaces: what is not normal to one of them is then not friction alone. before: velocities before the
    contacts. Returns false if a particle is then faster than max_speed */
 SPRING_NOINLINE bool damp_bounces(const scene_step *s, const scalar *before)
 {
     const scalar *const remaining = scene_read(s->scene, ARRAY_SUMS);
     const size_t stride = s->scene->layout.stride;
     const uint32_t axes = s->particles.axes;
-    for (unsigned k = 0; k < s->contacts.setting.count; k++) {
-        const uint32_t bit = UINT32_C(1) << k;
-        for (size_t i = 0; s->contacts.setting.body[k].restitution > 0 && i < s->particles.count; i++) {
-            if ((s->contacts.touched[i] & bit) == 0 || remaining[i] == 1)
+    bool bounces = false;
+    for (unsigned k = 0; k < s->contacts.setting.count; k++)
+        bounces = bounces || s->contacts.setting.body[k].restitution > 0;
+    for (size_t i = 0; bounces && i < s->particles.count; i++) {
+        if (s->contacts.touched[i] == 0 || remaining[i] == 1)
+            continue;
+        contact_surface surface[most_surfaces];
+        const unsigned surfaces = surfaces_at(s, s->contacts.touched[i], i, true, s->whole.x, surface);
+        for (unsigned j = 0; j < surfaces; j++) {
+            if (s->contacts.setting.body[surface[j].index].restitution == 0)
                 continue;
-            contact_surface surface[most_surfaces];
-            const unsigned surfaces = surfaces_at(s, bit, i, true, s->whole.x, surface);
-            for (unsigned j = 0; j < surfaces; j++) {
-                const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
-                              u = vector_minus(v, surface[j].velocity),
-                              impact = vector_minus(v, load_vector(before + i, stride, axes));
-                const double leaving = vector_dot(u, n), push = vector_dot(impact, n);
-                const double removed = fmin((1 - (double)remaining[i]) * leaving, push);
-                if (!(removed > 0))
-                    continue;
-                const vector3 friction = vector_plus(impact, -push, n);
-                const double size = spring_sqrt(vector_dot(friction, friction));
-                const double excess = size - surface[j].friction * (push - removed);
-                const vector3 change = vector_plus(vector_times(removed, n), excess > 0 ? excess / size : 0, friction);
-                store_vector(s->whole.v + i, stride, axes, vector_plus(v, -1, change));
-                record_change(s, i, k, s->whole.x, change);
-            }
+            const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
+                          u = vector_minus(v, surface[j].velocity),
+                          impact = vector_minus(v, load_vector(before + i, stride, axes));
+            const double leaving = vector_dot(u, n), push = vector_dot(impact, n);
+            const double removed = fmin((1 - (double)remaining[i]) * leaving, push);
+            if (!(removed > 0))
+                continue;
+            const vector3 friction = vector_plus(impact, -push, n);
+            const double size = spring_sqrt(vector_dot(friction, friction));
+            const double excess = surfaces == 1 ? size - surface[j].friction * (push - removed) : 0;
+            const vector3 change = vector_plus(vector_times(removed, n), excess > 0 ? excess / size : 0, friction);
+            store_vector(s->whole.v + i, stride, axes, vector_plus(v, -1, change));
+            record_change(s, i, surface[j].index, s->whole.x, change);
         }
     }
     size_t i = s->whole.max_speed < SCALAR_MAX ? 0 : s->particles.count;

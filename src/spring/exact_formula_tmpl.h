@@ -127,9 +127,9 @@ SPRING_INLINE exact_coefficients exact_coefficients_of(real w, real b, real rest
     }
     const exact_halves E = exact_halves_of(-rate * t);
     exact_coefficients c = {E.half, E.other * F, E.other * G, E.other * H, w * (E.other * H), splat(0), rate};
-    const lane_mask unstrung = w == 0; /* half F is 1; d.left may have underflowed */
-    if (any(unstrung))
-        c.F = select_real(unstrung, 1 / E.half, c.F);
+    const lane_mask no_stiffness = w == 0; /* half F is 1, also where d.left has underflowed */
+    if (any(no_stiffness))
+        c.F = select_real(no_stiffness, 1 / E.half, c.F);
     if (!loaded)
         return c;
 

@@ -353,6 +353,38 @@ static void damped_link_at_rest(void)
         }
 }
 
+/* Pairs of particles with a damped link come to rest in gutters of two planes at right angles, turned about z. */
+static void damped_pair_in_a_gutter(void)
+{
+    double fastest = 0, strongest = 0; /* [m/s]; impulses in units of the weight times dt */
+    for (int i = 0; i < 300; i++) {
+        const double dt = 1. / 240, mass = 0.05, tilt = random_uniform(0.05, 0.7);
+        const double x[6] = {0.03, 0.1, 0, 0.05, 0.12, 0.09};
+        const spring_link link = {.b = 1, .rest = 0.1, .stiffness = 1000, .damping = random_log(1, 200)};
+        spring_scene_def def = falling(2, x, NULL, mass);
+        def.gravity[2] = 0.2, def.drag = 0.01, def.links = 1, def.link = &link, def.colliders = 2;
+        spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{-sin(tilt), cos(tilt), 0}}},
+                                {.shape = SPRING_PLANE, .axis = {{cos(tilt), sin(tilt), 0}}}};
+        c[0].restitution = c[1].restitution = random_log(0.001, 0.5);
+        c[0].friction = c[1].friction = random_uniform(0.1, 0.8);
+        spring_scene *s = scene_with(&def, c);
+        run(s, SPRING_LEAPFROG, dt, 1200);
+        for (int step = 0; step < 400; step++) {
+            double v[6];
+            spring_impulse j[2];
+            run(s, SPRING_LEAPFROG, dt, 1);
+            spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 2);
+            spring_scene_impulses(s, j, 0, 2);
+            fastest = fmax(fastest, fmax(length(v), length(v + 3)));
+            for (int k = 0; k < 2; k++)
+                strongest = fmax(strongest, length(j[k].linear) / (2 * mass * gravity * dt));
+        }
+        free(s);
+    }
+    CHECK_BELOW(fastest, gravity / 240, "at rest, or falling for a step");
+    CHECK_BELOW(strongest, 1.5, "they carry the weight");
+}
+
 static const test tests[] = {
     {"a damped spring on the floor", damped_spring_on_floor},
     {"damped body on a platform", damped_body_on_platform},
@@ -365,6 +397,7 @@ static const test tests[] = {
     {"damped block slides sideways", damped_block_slides_sideways},
     {"heavy body on feet", heavy_body_on_feet},
     {"damped bodies fall", damped_bodies_fall},
+    {"a damped pair in a gutter", damped_pair_in_a_gutter},
     {"a damped link at rest", damped_link_at_rest},
 };
 
