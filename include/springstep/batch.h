@@ -72,8 +72,10 @@ typedef struct spring_batchf {
  * computed once, and a spring costs six multiplications and two additions. Otherwise each spring has its own
  * coefficients, also computed with SIMD. In single precision, shared coefficients are computed in double and rounded
  * once, while a spring with its own coefficients is advanced in double and rounded at the end. In no other case does
- * sharing change a result. Here it changes it by rounding errors of the state, as long as the coefficients are in the
- * range of float. The coefficient of accel is about t^2/2 in short steps, so t must be above 1.6e-19 s.
+ * sharing change a result. Rounded coefficients change the state by rounding errors, which have the same direction in
+ * every call: the amplitude of a spring changes by up to 6.4e-8 of itself. Over many calls, use springs with their own
+ * coefficients, or double precision. The coefficient of accel is about t^2/2 in short steps, so it is in the range of
+ * float only if t is above 1.6e-19 s.
  *
  * The state of a damped spring decays to denormal numbers, below about 1e-308 (1e-38 in float), which are slow on many
  * processors. They are not set to zero, because this would change the results. Leave settled springs out of the batch,
@@ -152,9 +154,9 @@ SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double
 
 /** The single-precision version. In the rule of spring_follow() by which springs are placed on their targets, the ulp
    is that of float, and FLT_MIN and 2^-11 replace DBL_MIN and 2^-16. A spring is therefore placed from at most 2304
-   ulps away, less than 0.03 % of the larger of |x| and |rest position|. It may stop before it is placed if slow dt <
-   2^-11: half-lives above 23 s at 60 Hz, 5.9 s at 240 Hz and 0.029 s at 48 kHz. Rest positions are computed in float
-   and tolerances are rounded to float; dt is not rounded. */
+   ulps + 2.4e-35 away; the ulps are less than 0.03 % of the larger of |x| and |rest position|. It may stop before it
+   is placed if slow dt < 2^-11: half-lives above 23 s at 60 Hz, 5.9 s at 240 Hz and 0.029 s at 48 kHz. Rest positions
+   are computed in float and tolerances are rounded to float; dt is not rounded. */
 SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
                                               double v_tol, size_t *moving);
 

@@ -250,11 +250,11 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *     hypot(x - rest position, (v - T')/omega) max(min(1, slow dt), 2^-16) <= 9/8 ulp + DBL_MIN
  *
  * where slow is the decay rate [1/s] of the slowest mode, and ulp is the larger of the ulp of x and the ulp of the rest
- * position. A spring is therefore placed only from at most 73 728 ulps away. As dt varies, the result jumps by at most
- * this distance, which is less than 1.7e-11 of the larger of |x| and |rest position|. If slow dt < 2^-16, rounding
- * error may stop the spring before it is placed, up to 1.2/(slow dt) ulps from its rest position. This concerns
- * half-lives above 757 s at 60 Hz, 189 s at 240 Hz and 0.94 s at 48 kHz. Without stiffness, damping brings the velocity
- * to T' + load/damping, and the position of the target has no effect.
+ * position. A spring is therefore placed only from at most 73 728 ulps + 1.5e-303 away. As dt varies, the result jumps
+ * by at most this distance. The ulps are less than 1.7e-11 of the larger of |x| and |rest position|. If slow dt <
+ * 2^-16, rounding error may stop the spring before it is placed, up to 1.2/(slow dt) ulps from its rest position. This
+ * concerns half-lives above 757 s at 60 Hz, 189 s at 240 Hz and 0.94 s at 48 kHz. Without stiffness, damping brings the
+ * velocity to T' + load/damping, and the position of the target has no effect.
  *
  * @param[in,out] s                state; unchanged unless SPRING_OK is returned
  * @param[in]     p                parameters

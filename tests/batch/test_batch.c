@@ -567,6 +567,25 @@ static void steps_are_rounded(void)
 
 /* ---- stable step */
 
+/* Shared coefficients of the exact solution are rounded once, so their errors add up. An undamped spring has F = G = c and
+   H wH = 1 - c^2 before rounding. F and G are below 1 and are rounded by at most eps/4, H and wH by eps/2 of themselves.
+   So the amplitude, sqrt(F G + H wH), changes by at most eps (c + 2 - 2 c^2)/4, which is below 0.54 eps. */
+static void shared_exact_solution_drifts(void)
+{
+    const uint64_t calls = 20000;
+    for (int i = 0; i < 40; i++) {
+        scalar x = 1, v = 0;
+        const scalar w = (scalar)random_log(1, 1000);
+        const spring_batch b = {.count = 1, .x = &x, .v = &v, .omega2 = &w, .shared = SPRING_SHARED_OMEGA2};
+        for (uint64_t k = 0; k < calls; k++)
+            if (advance(&b, SPRING_EXACT, 1.0 / 240, 1) != SPRING_OK)
+                break;
+        const double size = hypot((double)x, (double)v / sqrt((double)w));
+        const double random = 8 * sqrt((double)calls) * (double)SCALAR_EPSILON;
+        CHECK_CLOSE(size, 1, 0.54 * (double)calls * (double)SCALAR_EPSILON + random, "the amplitude");
+    }
+}
+
 static void stable_step(void)
 {
     static place p;
@@ -692,6 +711,7 @@ int main(int argc, char **argv)
         {"overlapping arrays", overlaps},
         {"bad batches", bad_batches},
         {"bad shared parameters", bad_shared_parameters},
+        {"shared exact solution drifts", shared_exact_solution_drifts},
         {"stable step", stable_step},
 #ifdef SPRING_FLOAT
         {"a step is rounded to float", steps_are_rounded},
